@@ -1,0 +1,1 @@
+//! What exists in froth: plain data with unit and meaning, no behaviour beyond constructors.

@@ -1,0 +1,1 @@
+//! Assembles and runs: scene files, methods (schedules), run loop, checkpoints, pictures, verification.

@@ -1,0 +1,2 @@
+//! The `froth` command line.
+fn main() {}

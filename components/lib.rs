@@ -1,1 +1,20 @@
 //! What exists in froth: plain data with unit and meaning, no behaviour beyond constructors.
+//!
+//! * [`kind`]: what an entity is (Eulerian particle, Lagrangian particle, boundary particle, region).
+//! * [`motion`], [`film`], [`gas`], [`identity`]: what it carries, one physical idea per component.
+//! * [`column`]: how a component is laid out as scalars, for row permutation, checkpoints and export.
+//! * [`clock`], [`material`]: the few quantities that belong to the whole run.
+//!
+//! Conventions (units, signs, orientation) are drawn once in [`film`].
+
+#[macro_use]
+pub mod column;
+
+pub mod clock;
+
+pub mod film;
+pub mod gas;
+pub mod identity;
+pub mod kind;
+pub mod material;
+pub mod motion;

@@ -1,1 +1,11 @@
 //! What happens in froth: one folder per subject, one file per stage; every system is a thin shell over pure functions.
+//!
+//! * [`stage`]: the order of a step, fixed once.
+//! * [`rows`]: particles as rows of contiguous columns; the registry of columns; sorting.
+//! * [`neighbours`]: cell lists, compressed rows of neighbours, kernels.
+//! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
+
+pub mod neighbours;
+pub mod operators;
+pub mod rows;
+pub mod stage;

@@ -1,0 +1,213 @@
+//! The registry of columns: the one description that row permutation, checkpoints and export use.
+
+use bevy_ecs::query::With;
+use bevy_ecs::resource::Resource;
+use bevy_ecs::world::World;
+use froth_components::column::{Column, Plain};
+use froth_components::kind::Kind;
+use rayon::prelude::*;
+
+/// Every column of every kind, in the order of registration.
+#[derive(Resource, Default)]
+pub struct ColumnRegistry {
+    entries: Vec<ColumnEntry>,
+}
+
+/// What the registry knows of one column.
+#[derive(Clone, Copy)]
+pub struct ColumnEntry {
+    /// Name of the kind.
+    pub kind: &'static str,
+    /// Name of the column.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Names of the scalars in a value; empty for a single one.
+    pub lanes: &'static [&'static str],
+    /// Bytes per row when saved.
+    pub row_bytes: usize,
+    rows: fn(&mut World) -> Vec<usize>,
+    permute: fn(&mut World, &[u32]),
+    save: fn(&mut World) -> Vec<u8>,
+    load: fn(&mut World, &[u8]),
+    numbers: fn(&mut World) -> Vec<f64>,
+}
+
+impl ColumnEntry {
+    /// The column as little-endian bytes, row after row.
+    #[must_use]
+    pub fn save(&self, world: &mut World) -> Vec<u8> {
+        (self.save)(world)
+    }
+
+    /// Overwrites the column with what [`ColumnEntry::save`] gave; the rows must exist.
+    pub fn load(&self, world: &mut World, bytes: &[u8]) {
+        (self.load)(world, bytes);
+    }
+
+    /// The column as numbers, row after row, lane after lane.
+    #[must_use]
+    pub fn numbers(&self, world: &mut World) -> Vec<f64> {
+        (self.numbers)(world)
+    }
+}
+
+/// A kind whose entities do not all live in one table.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the {kind} particles are split over {tables} tables: column `{column}` was given to some of them only; \
+     register it for the whole kind instead"
+)]
+pub struct SplitKind {
+    /// Name of the kind.
+    pub kind: &'static str,
+    /// The column that showed the split.
+    pub column: &'static str,
+    /// Number of non-empty tables.
+    pub tables: usize,
+}
+
+impl ColumnRegistry {
+    /// Gives every future entity of kind `K` the column `C`, and notes it for sorting, checkpoints and export.
+    /// A second registration of the same pair changes nothing.
+    pub fn register<K: Kind, C: Column + Default>(world: &mut World) {
+        let registered = |e: &ColumnEntry| e.kind == K::NAME && e.name == C::NAME;
+        if world.get_resource_or_init::<Self>().entries.iter().any(registered) {
+            return;
+        }
+        world.register_required_components::<K, C>();
+        world.resource_mut::<Self>().entries.push(ColumnEntry {
+            kind: K::NAME,
+            name: C::NAME,
+            unit: C::UNIT,
+            lanes: C::Value::LANES,
+            row_bytes: C::Value::byte_len(),
+            rows: table_rows::<K, C>,
+            permute: permute_column::<K, C>,
+            save: save_column::<K, C>,
+            load: load_column::<K, C>,
+            numbers: column_numbers::<K, C>,
+        });
+    }
+
+    /// All columns.
+    #[must_use]
+    pub fn entries(&self) -> &[ColumnEntry] {
+        &self.entries
+    }
+
+    /// The columns of the kind called `kind`.
+    pub fn of_kind<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = ColumnEntry> + 'a {
+        self.entries.iter().copied().filter(move |entry| entry.kind == kind)
+    }
+
+    /// Checks that every kind lives in one table.
+    ///
+    /// # Errors
+    /// [`SplitKind`] names the kind and the column that only some of its entities carry.
+    pub fn check_tables(world: &mut World) -> Result<(), SplitKind> {
+        let entries = world.get_resource_or_init::<Self>().entries.clone();
+        for entry in entries {
+            let tables = (entry.rows)(world).iter().filter(|&&rows| rows > 0).count();
+            if tables > 1 {
+                return Err(SplitKind { kind: entry.kind, column: entry.name, tables });
+            }
+        }
+        Ok(())
+    }
+
+    /// Permutes the rows of kind `K`: new row `i` holds what was in row `order[i]`.
+    pub fn permute_rows<K: Kind>(world: &mut World, order: &[u32]) {
+        let entries: Vec<ColumnEntry> = world.resource::<Self>().of_kind(K::NAME).collect();
+        for entry in entries {
+            (entry.permute)(world, order);
+        }
+    }
+}
+
+fn table_rows<K: Kind, C: Column>(world: &mut World) -> Vec<usize> {
+    let mut state = world.query_filtered::<&C, With<K>>();
+    state.contiguous_iter(world).expect("invariant: columns are stored in tables").map(<[C]>::len).collect()
+}
+
+fn permute_column<K: Kind, C: Column>(world: &mut World, order: &[u32]) {
+    let mut state = world.query_filtered::<&mut C, With<K>>();
+    for mut table in state.contiguous_iter_mut(world).expect("invariant: columns are stored in tables") {
+        let column = table.bypass_change_detection();
+        if column.is_empty() {
+            continue;
+        }
+        let sorted: Vec<C> = order.par_iter().map(|&old| column[old as usize]).collect();
+        column.copy_from_slice(&sorted);
+    }
+}
+
+fn save_column<K: Kind, C: Column>(world: &mut World) -> Vec<u8> {
+    let column = super::read_column::<K, C>(world);
+    let mut bytes = Vec::with_capacity(column.len() * C::Value::byte_len());
+    column.iter().for_each(|value| value.value().write_le(&mut bytes));
+    bytes
+}
+
+fn load_column<K: Kind, C: Column>(world: &mut World, bytes: &[u8]) {
+    let values: Vec<C> =
+        bytes.chunks_exact(C::Value::byte_len()).map(|raw| C::from_value(C::Value::read_le(raw))).collect();
+    super::fill_column::<K, C>(world, &values);
+}
+
+fn column_numbers<K: Kind, C: Column>(world: &mut World) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    super::read_column::<K, C>(world).iter().for_each(|value| value.value().push_lanes(&mut numbers));
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::{fill_column, read_column, spawn_rows};
+    use froth_components::identity::StableId;
+    use froth_components::kind::EulerianParticle;
+    use froth_components::motion::{Position, Velocity};
+    use glam::DVec3;
+
+    fn three_rows() -> World {
+        let mut world = World::new();
+        ColumnRegistry::register::<EulerianParticle, StableId>(&mut world);
+        ColumnRegistry::register::<EulerianParticle, Position>(&mut world);
+        spawn_rows::<EulerianParticle>(&mut world, 3);
+        fill_column::<EulerianParticle, _>(&mut world, &[StableId(7), StableId(8), StableId(9)]);
+        fill_column::<EulerianParticle, _>(&mut world, &[0.0, 1.0, 2.0].map(|v| Position(DVec3::splat(v))));
+        world
+    }
+
+    #[test]
+    fn permuting_rows_moves_every_column_alike() {
+        let mut world = three_rows();
+        ColumnRegistry::permute_rows::<EulerianParticle>(&mut world, &[2, 0, 1]);
+        assert_eq!(
+            read_column::<EulerianParticle, StableId>(&mut world),
+            [StableId(9), StableId(7), StableId(8)]
+        );
+        assert_eq!(read_column::<EulerianParticle, Position>(&mut world)[0], Position(DVec3::splat(2.0)));
+    }
+
+    #[test]
+    fn a_saved_column_is_loaded_bit_for_bit() {
+        let mut world = three_rows();
+        let entries = world.resource::<ColumnRegistry>().entries().to_vec();
+        let saved: Vec<Vec<u8>> = entries.iter().map(|e| e.save(&mut world)).collect();
+        let mut other = three_rows();
+        fill_column::<EulerianParticle, _>(&mut other, &[Position(DVec3::NAN); 3]);
+        entries.iter().zip(&saved).for_each(|(e, bytes)| e.load(&mut other, bytes));
+        assert_eq!(saved[1], entries[1].save(&mut other));
+    }
+
+    #[test]
+    fn a_component_on_some_particles_only_is_reported() {
+        let mut world = three_rows();
+        assert_eq!(ColumnRegistry::check_tables(&mut world), Ok(()));
+        world.spawn((EulerianParticle, Velocity(DVec3::ZERO)));
+        let split = ColumnRegistry::check_tables(&mut world).expect_err("a split table");
+        assert_eq!((split.kind, split.tables), ("eulerian", 2));
+    }
+}

@@ -1,0 +1,93 @@
+//! Vectors between tangent planes.
+
+use glam::{DMat3, DVec3};
+
+/// The part of `v` perpendicular to the unit normal `n`.
+#[must_use]
+#[inline]
+pub fn tangential(v: DVec3, n: DVec3) -> DVec3 {
+    v - n * n.dot(v)
+}
+
+/// The smallest rotation that takes one unit normal into another, applied to vectors.
+///
+/// # Equation
+/// `R v = v d + c x v + c (c.v)/(1 + d)` with `c = a x b`, `d = a.b`.
+///
+/// # Source
+/// Rodrigues' formula. DEVIATION from Deng 2022, table 1 (projection): over one round trip between the particle sets
+/// on a sphere of 1000 Eulerian particles, projection loses 40 to 200 times more kinetic energy.
+#[derive(Clone, Copy, Debug)]
+pub struct MinimalRotation {
+    cross: DVec3,
+    dot: f64,
+    scale: f64,
+}
+
+impl MinimalRotation {
+    /// The rotation that takes unit vector `a` into unit vector `b`; they must not be opposite.
+    #[must_use]
+    #[inline]
+    pub fn between(a: DVec3, b: DVec3) -> Self {
+        let dot = a.dot(b);
+        Self { cross: a.cross(b), dot, scale: 1.0 / (1.0 + dot).max(f64::EPSILON) }
+    }
+
+    /// `R v`.
+    #[must_use]
+    #[inline]
+    pub fn apply(&self, v: DVec3) -> DVec3 {
+        v * self.dot + self.cross.cross(v) + self.cross * (self.cross.dot(v) * self.scale)
+    }
+
+    /// `R` as a matrix.
+    #[must_use]
+    pub fn matrix(&self) -> DMat3 {
+        DMat3::from_cols(self.apply(DVec3::X), self.apply(DVec3::Y), self.apply(DVec3::Z))
+    }
+}
+
+/// `v v^T` weighted by `weight`.
+#[must_use]
+#[inline]
+pub fn outer(weight: f64, a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * (weight * b.x), a * (weight * b.y), a * (weight * b.z))
+}
+
+/// Inverse, within the plane perpendicular to `n`, of a symmetric tangential matrix; zero if its determinant in the
+/// plane is below `1e-6` of its squared trace (points on a line, or none), where no inverse can be trusted.
+#[must_use]
+pub fn tangential_inverse(m: DMat3, n: DVec3) -> DMat3 {
+    let trace = m.x_axis.x + m.y_axis.y + m.z_axis.z;
+    let filled = m + outer(trace, n, n);
+    // The filled matrix has the plane's determinant times `trace`.
+    if filled.determinant() <= 1e-6 * trace * trace * trace {
+        return DMat3::ZERO;
+    }
+    filled.inverse() - outer(1.0 / trace, n, n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_minimal_rotation_takes_one_normal_into_the_other_and_keeps_lengths() {
+        let (a, b) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(1.0, 2.0, 2.0) / 3.0);
+        let rotation = MinimalRotation::between(a, b);
+        let v = DVec3::new(0.3, -1.0, 2.0);
+        assert!(rotation.apply(a).distance(b) < 1e-15);
+        assert!((rotation.apply(v).length() - v.length()).abs() < 1e-15);
+        assert!((rotation.matrix() * v).distance(rotation.apply(v)) < 1e-15);
+    }
+
+    #[test]
+    fn the_tangential_inverse_undoes_the_matrix_in_the_plane() {
+        let n = DVec3::new(1.0, 2.0, 2.0) / 3.0;
+        let (t1, t2) = n.any_orthonormal_pair();
+        let m = outer(2.0, t1, t1) + outer(0.5, t2, t2);
+        let v = t1 * 3.0 - t2;
+        assert!((tangential_inverse(m, n) * (m * v)).distance(v) < 1e-12);
+        assert_eq!(tangential_inverse(outer(2.0, t1, t1), n), DMat3::ZERO);
+    }
+}

@@ -1,0 +1,24 @@
+//! What a scene file can say: components of authored entities, and the settings of a run.
+//!
+//! An authored entity (a film, a field) is turned into discrete ones (particles, vertices) by a method. Every field here states its
+//! unit and its default; values are checked where they are read, so that an error points at them.
+//!
+//! - films: [`shape`], [`perturbation`], [`film`], [`motion`];
+//! - what acts on them: [`field`];
+//! - the run: [`method`], [`resolution`], [`liquid`].
+
+pub mod field;
+pub mod film;
+pub mod liquid;
+pub mod method;
+pub mod motion;
+pub mod perturbation;
+pub mod resolution;
+pub mod shape;
+
+use bevy_ecs::component::Component;
+use serde::Deserialize;
+
+/// What a user calls an entity, in messages and tables.
+#[derive(Component, Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct Name(pub String);

@@ -1,0 +1,233 @@
+//! Shapes a film starts from: closed ([`Sphere`], [`Ellipsoid`]) or pinned at a rim ([`HalfSphere`], [`Disc`], [`Rectangle`]).
+//!
+//! Each knows its area and the length of its rim, from which the number of particles is estimated before any is made.
+
+use std::f64::consts::{PI, TAU};
+
+use bevy_ecs::component::Component;
+use glam::DVec3;
+use serde::Deserialize;
+
+use crate::quantity::{Direction, Length, Vector, dimension, range};
+
+/// A place, metres.
+pub type Place = Vector<dimension::Length>;
+
+/// A closed sphere.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Centre, metres. Default: the origin.
+    #[serde(default)]
+    pub centre: Place,
+    /// Radius, metres.
+    #[serde(deserialize_with = "range::positive")]
+    pub radius: Length,
+}
+
+/// A closed ellipsoid with its axes along x, y and z.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ellipsoid {
+    /// Centre, metres. Default: the origin.
+    #[serde(default)]
+    pub centre: Place,
+    /// Half axes along x, y and z, metres.
+    pub radii: Radii,
+}
+
+/// Three positive lengths, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radii(DVec3);
+
+impl Radii {
+    /// Half axes in metres; for literals in code.
+    #[must_use]
+    pub const fn from_si(radii: DVec3) -> Self {
+        Self(radii)
+    }
+
+    /// Half axes along x, y and z, metres.
+    #[must_use]
+    pub const fn si(self) -> DVec3 {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Radii {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        range::positive_vector(deserializer).map(|radii: Place| Self(radii.si()))
+    }
+}
+
+/// Half a sphere on a plane; the rim is pinned, the plane itself is no film.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HalfSphere {
+    /// Centre of the rim, metres. Default: the origin.
+    #[serde(default)]
+    pub centre: Place,
+    /// Radius, metres.
+    #[serde(deserialize_with = "range::positive")]
+    pub radius: Length,
+    /// From the plane to the pole. Default: y.
+    #[serde(default = "along_y")]
+    pub up: Direction,
+}
+
+/// A flat disc whose rim is pinned.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// Centre, metres. Default: the origin.
+    #[serde(default)]
+    pub centre: Place,
+    /// Radius, metres.
+    #[serde(deserialize_with = "range::positive")]
+    pub radius: Length,
+    /// Normal of the plane. Default: z.
+    #[serde(default = "along_z")]
+    pub normal: Direction,
+}
+
+/// A flat rectangle whose rim is pinned.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rectangle {
+    /// Centre, metres. Default: the origin.
+    #[serde(default)]
+    pub centre: Place,
+    /// Extent across `up`, metres.
+    #[serde(deserialize_with = "range::positive")]
+    pub width: Length,
+    /// Extent along `up`, metres.
+    #[serde(deserialize_with = "range::positive")]
+    pub height: Length,
+    /// Normal of the plane. Default: z.
+    #[serde(default = "along_z")]
+    pub normal: Direction,
+    /// Direction of the height; its part along the normal is dropped. Default: y.
+    #[serde(default = "along_y")]
+    pub up: Direction,
+}
+
+fn along_y() -> Direction {
+    Direction::Y
+}
+
+fn along_z() -> Direction {
+    Direction::Z
+}
+
+/// Any one shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A closed sphere.
+    Sphere(Sphere),
+    /// A closed ellipsoid.
+    Ellipsoid(Ellipsoid),
+    /// A half sphere with a pinned rim.
+    HalfSphere(HalfSphere),
+    /// A disc with a pinned rim.
+    Disc(Disc),
+    /// A rectangle with a pinned rim.
+    Rectangle(Rectangle),
+}
+
+impl Shape {
+    /// Names of the shape components, as scene files write them.
+    pub const NAMES: [&str; 5] = ["Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle"];
+
+    /// Centre, metres.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        match self {
+            Self::Sphere(sphere) => sphere.centre.si(),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.centre.si(),
+            Self::HalfSphere(half) => half.centre.si(),
+            Self::Disc(disc) => disc.centre.si(),
+            Self::Rectangle(rectangle) => rectangle.centre.si(),
+        }
+    }
+
+    /// Size that relative amplitudes and noise frequencies refer to, metres: the radius, the geometric mean of the half axes,
+    /// or half the longer side.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        match self {
+            Self::Sphere(sphere) => sphere.radius.si(),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.radii.si().element_product().cbrt(),
+            Self::HalfSphere(half) => half.radius.si(),
+            Self::Disc(disc) => disc.radius.si(),
+            Self::Rectangle(rectangle) => 0.5 * rectangle.width.si().max(rectangle.height.si()),
+        }
+    }
+
+    /// Area of the film, square metres. Exact but for the ellipsoid (Knud Thomsen's formula, within 1.1 %).
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Sphere(sphere) => 4.0 * PI * sphere.radius.si().powi(2),
+            Self::Ellipsoid(ellipsoid) => ellipsoid_area(ellipsoid.radii.si()),
+            Self::HalfSphere(half) => TAU * half.radius.si().powi(2),
+            Self::Disc(disc) => PI * disc.radius.si().powi(2),
+            Self::Rectangle(rectangle) => rectangle.width.si() * rectangle.height.si(),
+        }
+    }
+
+    /// Length of the pinned rim, metres; 0 for a closed shape.
+    #[must_use]
+    pub fn rim(&self) -> f64 {
+        match self {
+            Self::Sphere(_) | Self::Ellipsoid(_) => 0.0,
+            Self::HalfSphere(half) => TAU * half.radius.si(),
+            Self::Disc(disc) => TAU * disc.radius.si(),
+            Self::Rectangle(rectangle) => 2.0 * (rectangle.width.si() + rectangle.height.si()),
+        }
+    }
+
+    /// Whether the shape encloses a gas volume by itself.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        matches!(self, Self::Sphere(_) | Self::Ellipsoid(_))
+    }
+}
+
+/// Knud Thomsen's approximation `4π ((aᵖbᵖ + aᵖcᵖ + bᵖcᵖ)/3)^(1/p)`, `p = 1.6075`.
+fn ellipsoid_area(radii: DVec3) -> f64 {
+    const POWER: f64 = 1.6075;
+    // Scaled by the longest half axis: the powers of a tiny ellipsoid would vanish.
+    let longest = radii.max_element();
+    let [a, b, c] = (radii / longest).to_array().map(|radius| radius.powf(POWER));
+    4.0 * PI * longest.powi(2) * ((a * b + a * c + b * c) / 3.0).powf(1.0 / POWER)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ellipsoid(radii: DVec3) -> Shape {
+        Shape::Ellipsoid(Ellipsoid { centre: Place::ZERO, radii: Radii(radii) })
+    }
+
+    #[test]
+    fn an_ellipsoid_of_equal_axes_has_the_area_of_a_sphere() {
+        let sphere = Shape::Sphere(Sphere { centre: Place::ZERO, radius: Length::from_si(0.05) });
+        let ratio = ellipsoid(DVec3::splat(0.05)).area() / sphere.area();
+        assert!((ratio - 1.0).abs() < 1e-12, "{ratio}");
+    }
+
+    #[test]
+    fn the_area_of_a_prolate_ellipsoid_is_within_the_stated_bound() {
+        // Exact for axes 1, 1, 2: 2π(1 + c/e asin e) with e² = 3/4.
+        let eccentricity = 0.75_f64.sqrt();
+        let exact = TAU * (1.0 + 2.0 / eccentricity * eccentricity.asin());
+        assert!((ellipsoid(DVec3::new(1.0, 1.0, 2.0)).area() / exact - 1.0).abs() < 0.011);
+    }
+
+    #[test]
+    fn a_negative_half_axis_is_refused() {
+        assert!(ron::from_str::<Ellipsoid>("(radii: (1, 1, 2))").is_ok());
+        assert!(ron::from_str::<Ellipsoid>("(radii: (1, -1, 2))").is_err());
+    }
+}

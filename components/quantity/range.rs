@@ -1,0 +1,121 @@
+//! Ranges that a scene field demands, for `#[serde(deserialize_with = "...")]`.
+//!
+//! A check at the field, not after the whole component, lets an error point at the value.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use serde::de::{Deserialize, Deserializer};
+
+use super::{Count, Dimension, Length, Quantity, Ratio, Refusal, RefusalKind, SurfaceTension, Vector};
+
+/// Greater than zero.
+///
+/// # Errors
+/// As the quantity, or when it is zero or negative.
+pub fn positive<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) -> Result<Quantity<D>, De::Error> {
+    let value = Quantity::<D>::deserialize(deserializer)?;
+    let rule = format!("{} greater than 0 is wanted, e.g. {}", D::INFO.name, D::INFO.example);
+    demand(value.si() > 0.0, value, value, rule)
+}
+
+/// Zero or greater.
+///
+/// # Errors
+/// As the quantity, or when it is negative.
+pub fn not_negative<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) -> Result<Quantity<D>, De::Error> {
+    let value = Quantity::<D>::deserialize(deserializer)?;
+    let rule = format!("{} of 0 or more is wanted, e.g. {}", D::INFO.name, D::INFO.example);
+    demand(value.si() >= 0.0, value, value, rule)
+}
+
+/// Three parts, each greater than zero.
+///
+/// # Errors
+/// As the vector, or when a part is zero or negative.
+pub fn positive_vector<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) -> Result<Vector<D>, De::Error> {
+    let vector = Vector::<D>::deserialize(deserializer)?;
+    let smallest = Quantity::<D>::from_si(vector.si().min_element());
+    let rule = format!("three values greater than 0 are wanted, each {}, e.g. {}", D::INFO.name, D::INFO.example);
+    demand(smallest.si() > 0.0, vector, smallest, rule)
+}
+
+/// From 0 to 1, both included.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn fraction<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, 0.0..=1.0, "a number from 0 to 1 is wanted")
+}
+
+/// Relative deviation of a quantity that must stay positive: from 0 to 0.9.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn relative_deviation<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, 0.0..=0.9, "a relative deviation from 0 to 0.9 is wanted, e.g. 0.15 or \"15 %\"")
+}
+
+/// Thickness of a film: 1 nm to 1 mm. A bare `500` is 500 metres, hardly what was meant.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn film_thickness<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Length, De::Error> {
+    within(deserializer, 1e-9..=1e-3, "a film is 1 nm to 1 mm thick, e.g. \"500 nm\"; a bare number is in metres")
+}
+
+/// Tension of one interface: 1 uN/m to 1 N/m. A bare `25` is 25 N/m, hardly what was meant.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn interface_tension<'de, De: Deserializer<'de>>(deserializer: De) -> Result<SurfaceTension, De::Error> {
+    let rule = "an interface has a tension of 1e-6 to 1 N/m, e.g. \"25 mN/m\"; a bare number is in N/m";
+    within(deserializer, 1e-6..=1.0, rule)
+}
+
+/// Number of noise octaves: 1 to 12; each halves the length scale, and 12 halvings are below any resolution.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn octaves<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 12, "1 to 12 octaves are wanted")
+}
+
+/// Degree of a spherical harmonic: 1 to 64.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn harmonic_degree<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 64, "a spherical harmonic has a degree of 1 to 64 here")
+}
+
+/// Material particles per carrier: 1 to 1000.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn particles_per_carrier<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 1000, "1 to 1000 material particles per carrier are wanted, e.g. 16")
+}
+
+fn small_count<'de, De: Deserializer<'de>>(deserializer: De, largest: u32, rule: &str) -> Result<u32, De::Error> {
+    let count = Count::deserialize(deserializer)?.get();
+    let small = u32::try_from(count).unwrap_or(u32::MAX);
+    demand(small <= largest, small, count, rule.to_owned())
+}
+
+fn within<'de, D: Dimension, De: Deserializer<'de>>(
+    deserializer: De,
+    range: RangeInclusive<f64>,
+    rule: &str,
+) -> Result<Quantity<D>, De::Error> {
+    let value = Quantity::<D>::deserialize(deserializer)?;
+    demand(range.contains(&value.si()), value, value, rule.to_owned())
+}
+
+/// `value` if `fulfilled`; otherwise the error that `shown` breaks `rule`.
+fn demand<T, E: serde::de::Error>(fulfilled: bool, value: T, shown: impl Display, rule: String) -> Result<T, E> {
+    if fulfilled {
+        return Ok(value);
+    }
+    Err(Refusal::new(RefusalKind::OutOfRange, format!("`{shown}` is out of range"), rule).into_serde())
+}

@@ -1,0 +1,5 @@
+//! Scene files.
+
+mod header;
+
+pub use header::SceneHeader;

@@ -5,7 +5,9 @@
 //! * [`neighbours`]: cell lists, compressed rows of neighbours, kernels.
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
+pub mod melp;
 pub mod neighbours;
 pub mod operators;
 pub mod rows;
+pub mod sampling;
 pub mod stage;

@@ -11,6 +11,16 @@
 //! Deng 2022, Algorithm 1, Eqs 6 and 7. DEVIATION: Eq. 7 lacks the mass of the particle; vectors are rotated, not
 //! projected; the normal velocity lives on the carriers and is not gathered.
 
+use super::state::{FilmStencil, TangentialFlow, Transfers};
+use crate::observe::{Fault, Faults};
+use crate::rows::{columns, columns_mut};
+use crate::stage::Stage;
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::identity::StableId;
+use froth_components::kind::{EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
+use froth_components::motion::NormalSpeed;
 use super::links::{Carriers, Link};
 use crate::neighbours::cells::CellList;
 use crate::operators::stencil::SAME_SHEET;
@@ -110,4 +120,75 @@ pub fn gather_scalar(carriers: Carriers, material: Material, value: impl Fn(usiz
         sum
     };
     (0..carriers.positions.len()).into_par_iter().with_min_len(64).map(sum_at).collect()
+}
+
+/// Columns of the material particles that transfers read.
+pub type MaterialColumns<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static Position,
+        &'static Normal,
+        &'static InRegion,
+        &'static Velocity,
+        &'static VelocityGradient,
+        &'static LiquidVolume,
+        &'static SurfactantAmount,
+        &'static Warmth,
+    ),
+    With<LagrangianParticle>,
+>;
+
+/// Gathers liquid, surfactant, warmth and tangential velocity from the material particles.
+pub fn gather_liquid(
+    mut carriers: Query<
+        (
+            &Position,
+            &Normal,
+            &InRegion,
+            &StableId,
+            &NormalSpeed,
+            &mut LiquidVolume,
+            &mut SurfactantAmount,
+            &mut Warmth,
+            &mut Velocity,
+        ),
+        (With<EulerianParticle>, bevy_ecs::query::Without<LagrangianParticle>),
+    >,
+    material: MaterialColumns,
+    lamellae: Res<Lamellae>,
+    stencil: Res<FilmStencil>,
+    mut transfers: ResMut<Transfers>,
+    mut flow: ResMut<TangentialFlow>,
+    mut faults: ResMut<Faults>,
+) {
+    let (positions, normals, regions, ids, speeds, mut volumes, mut surfactants, mut warmth, mut velocities) =
+        columns_mut(&mut carriers);
+    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let Transfers { links, cells, gathered, .. } = &mut *transfers;
+    gather_all(carriers, Material::of(&material, links, cells), gathered);
+    if let Some(row) = gathered.iter().position(|g| !(g.volume > 0.0)) {
+        let detail = "has no liquid left: the film is thinner here than the material particles can show; \
+                      use more of them per carrier, or a finer resolution";
+        let fault = Fault::new(Stage::Gather, "liquid_volume", detail);
+        faults.report(fault.on_particle("eulerian", row, Some(ids[row].0)));
+        return;
+    }
+    flow.gathered.clear();
+    flow.gathered.extend(gathered.iter().map(|g| g.momentum / g.volume));
+    for (i, g) in gathered.iter().enumerate() {
+        volumes.bypass_change_detection()[i].0 = g.volume;
+        surfactants.bypass_change_detection()[i].0 = g.surfactant;
+        warmth.bypass_change_detection()[i].0 = g.warm_volume / g.volume;
+        velocities.bypass_change_detection()[i].0 = flow.gathered[i] + normals[i].0 * speeds[i].0;
+    }
+}
+
+impl<'a> Material<'a> {
+    /// The material particles of a query.
+    #[must_use]
+    pub fn of(query: &'a MaterialColumns, links: &'a [Link], cells: &'a CellList) -> Self {
+        let (positions, normals, regions, velocities, gradients, volumes, surfactants, warmth) = columns(query);
+        Self { positions, normals, regions, velocities, gradients, volumes, surfactants, warmth, links, cells }
+    }
 }

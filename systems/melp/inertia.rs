@@ -9,6 +9,17 @@
 //! # Source
 //! Derived; Deng 2022, Eq. 15 has the external force only.
 
+use super::normal_motion::NormalMotion;
+use super::settings::Melp;
+use super::state::{FilmStencil, TangentialFlow};
+use crate::rows::{columns, columns_mut};
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
+use froth_components::film::ShapeOperator;
+use froth_components::kind::EulerianParticle;
+use froth_components::material::Liquid;
+use froth_components::motion::{ExternalAcceleration, NormalSpeed, Position, Velocity};
 use crate::operators::stencil::Stencil;
 use crate::operators::tangent::{MinimalRotation, tangential};
 use froth_components::motion::Normal;
@@ -48,4 +59,48 @@ fn mix(stencil: &Stencil, normals: &[Normal], velocities: &mut [DVec3], weight: 
         }
         *u = tangential(*u, n);
     });
+}
+
+/// Columns of the carriers that the liquid's acceleration reads.
+type InertiaColumns<'w, 's> =
+    Query<'w, 's, (&'static Position, &'static Normal, &'static ShapeOperator, &'static ExternalAcceleration), With<EulerianParticle>>;
+
+/// Accelerates the liquid by external forces, the film's own motion, viscosity and smoothing.
+pub fn accelerate_liquid(
+    carriers: InertiaColumns,
+    stencil: Res<FilmStencil>,
+    liquid: Res<Liquid>,
+    melp: Res<Melp>,
+    clock: Res<Clock>,
+    motion: Res<NormalMotion>,
+    mut flow: ResMut<TangentialFlow>,
+) {
+    let (positions, normals, shapes, pushes) = columns(&carriers);
+    let (stencil, step) = (&stencil.0, clock.step_length);
+    let accelerated = |i: usize| {
+        let (n, u) = (normals[i].0, flow.gathered[i]);
+        let own = stencil.gradient(positions, normals, i, |j| motion.kinetic[j])
+            - shapes[i].0 * u * (motion.displacement[i] / step);
+        u + (tangential(pushes[i].0, n) + own) * step
+    };
+    let mut velocities: Vec<DVec3> =
+        (0..stencil.len()).into_par_iter().with_min_len(128).map(accelerated).collect();
+    if liquid.viscosity > 0.0 {
+        diffuse(stencil, normals, &mut velocities, liquid.viscosity, step);
+    }
+    if melp.xsph > 0.0 {
+        smooth(stencil, normals, &mut velocities, melp.xsph);
+    }
+    flow.solved = velocities;
+}
+
+/// Writes the whole velocity of the carriers, tangential and normal, for forces and observers.
+pub fn write_velocity(
+    mut carriers: Query<(&Normal, &NormalSpeed, &mut Velocity), With<EulerianParticle>>,
+    flow: Res<TangentialFlow>,
+) {
+    let (normals, speeds, mut velocities) = columns_mut(&mut carriers);
+    for (i, velocity) in velocities.bypass_change_detection().iter_mut().enumerate() {
+        velocity.0 = flow.solved.get(i).copied().unwrap_or_default() + normals[i].0 * speeds[i].0;
+    }
 }

@@ -9,9 +9,15 @@
 //! # Limits
 //! Near a rim the correction is shortened so that no weight is negative; there only constants pass exactly.
 
+use super::state::{FilmStencil, Transfers};
+use crate::rows::columns;
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::kind::{BoundaryParticle, EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
 use super::settings::TRANSFER_SUPPORT;
 use crate::neighbours::kernel::Kernel;
-use crate::operators::stencil::{SAME_SHEET, Stencil};
+use crate::operators::stencil::{Points, SAME_SHEET, Stencil};
 use crate::operators::tangent::{outer, tangential, tangential_inverse};
 use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position};
@@ -119,4 +125,33 @@ pub fn link_one(carriers: Carriers, kernel: &Kernel, place: DVec3, normal: DVec3
     let lowest = nearby[..count].iter().map(|(r, _)| 1.0 + slope.dot(*r - mean)).fold(f64::INFINITY, f64::min);
     let slope = if lowest < 0.0 { slope / (1.0 - lowest) } else { slope };
     Link { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum }
+}
+
+/// Builds the stencil of the carriers where they stand.
+pub fn build_stencil(
+    carriers: Query<(&Position, &Normal, &InRegion), With<EulerianParticle>>,
+    walls: Query<(&Position, &InRegion), With<BoundaryParticle>>,
+    lamellae: Res<Lamellae>,
+    mut stencil: ResMut<FilmStencil>,
+) {
+    let (positions, normals, regions) = columns(&carriers);
+    let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
+    let spacing = lamellae.spacing;
+    stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
+}
+
+/// Links the material particles to the carriers around them.
+pub fn link_material(
+    carriers: Query<(&Position, &Normal, &InRegion), With<EulerianParticle>>,
+    material: Query<(&Position, &Normal, &InRegion), With<LagrangianParticle>>,
+    lamellae: Res<Lamellae>,
+    stencil: Res<FilmStencil>,
+    mut transfers: ResMut<Transfers>,
+) {
+    let (positions, normals, regions) = columns(&carriers);
+    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let (positions, normals, regions) = columns(&material);
+    let Transfers { links, cells, .. } = &mut *transfers;
+    cells.rebuild(positions, TRANSFER_SUPPORT * lamellae.spacing);
+    link_all(carriers, positions, normals, regions, links);
 }

@@ -16,6 +16,19 @@
 //! Deng 2022, Eqs 13 to 15, with the factor 2 that Eq. 14 lost. DEVIATION: conjugate gradients instead of relaxed
 //! Jacobi; full divergence instead of its tangential part.
 
+use super::normal_motion::NormalMotion;
+use super::settings::Melp;
+use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
+use crate::observe::{Fault, Faults, Observables};
+use crate::rows::columns_mut;
+use crate::stage::Stage;
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
+use froth_components::film::{MeanCurvature, SurfaceTension, Surfactant, Thickness};
+use froth_components::kind::EulerianParticle;
+use froth_components::lamella::Lamellae;
+use froth_components::material::Liquid;
 use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
 use crate::operators::stencil::Stencil;
 use crate::rows::reduce::ordered_sum;
@@ -109,4 +122,64 @@ fn set_constant_mode(film: Range<usize>, reaction: &[f64], b: &[f64], x: &mut [f
     let missing = ordered_sum(film.len(), 0.0, |k| b[start + k] - reaction[start + k] * x[start + k]);
     let shift = missing / ordered_sum(film.len(), 0.0, |k| reaction[start + k]);
     x[film].iter_mut().for_each(|v| *v += shift);
+}
+
+/// Solves for concentration and flow on all films, and sets the surface tension.
+pub fn solve_marangoni(
+    mut carriers: Query<
+        (&Position, &Normal, &MeanCurvature, &Thickness, &mut Surfactant, &mut SurfaceTension),
+        With<EulerianParticle>,
+    >,
+    stencil: Res<FilmStencil>,
+    lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
+    melp: Res<Melp>,
+    clock: Res<Clock>,
+    transfers: Res<Transfers>,
+    motion: Res<NormalMotion>,
+    mut flow: ResMut<TangentialFlow>,
+    mut solvers: ResMut<Solvers>,
+    mut observables: ResMut<Observables>,
+    mut faults: ResMut<Faults>,
+) {
+    let (positions, normals, curvature, thickness, mut surfactant, mut tension) = columns_mut(&mut carriers);
+    let surfactant = surfactant.bypass_change_detection();
+    let tension = tension.bypass_change_detection();
+    let step = clock.step_length;
+    let stretching: Vec<f64> = (0..positions.len())
+        .map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step)
+        .collect();
+    let problem = MarangoniProblem {
+        stencil: &stencil.0,
+        positions,
+        normals,
+        gathered: &transfers.concentration,
+        thickness: &thickness.iter().map(|eta| eta.0).collect::<Vec<_>>(),
+        velocity: &flow.solved,
+        stretching: &stretching,
+        mobility: 2.0 * liquid.thermal_energy() / liquid.density,
+        step,
+    };
+    let films: Vec<Range<usize>> = lamellae.films.iter().map(|film| film.carriers.clone()).collect();
+    let mut concentration: Vec<f64> = surfactant.iter().map(|gamma| gamma.0).collect();
+    match problem.solve(&films, melp.marangoni, &mut concentration, &mut solvers.marangoni) {
+        Ok(info) => observables.record("marangoni_iterations", "1", f64::from(info.iterations)),
+        Err(failed) => {
+            faults.report(Fault::new(Stage::Dynamics, "Marangoni solve", failed.to_string()));
+            return;
+        }
+    }
+    flow.solved = problem.corrected_velocity(&concentration);
+    for (i, gamma) in concentration.iter().enumerate() {
+        surfactant[i].0 = *gamma;
+        tension[i].0 = liquid.tension_at(*gamma);
+    }
+    if let Some(row) = tension.iter().position(|t| !(t.0 > 0.0)) {
+        let detail = format!(
+            "is {:.3e} N/m: so much surfactant is crowded here that the film would spread by itself; \
+             lower the elasticity or the forces",
+            tension[row].0
+        );
+        faults.report(Fault::new(Stage::Dynamics, "surface_tension", detail).on_particle("eulerian", row, None));
+    }
 }

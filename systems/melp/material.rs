@@ -8,6 +8,15 @@
 //! Deng 2022, Algorithm 7, §4.8 (moving least squares). DEVIATION: blended quadratics are smooth between particles and
 //! need no solve per particle.
 
+use super::state::FilmStencil;
+use crate::observe::{Fault, Faults};
+use crate::rows::{columns, columns_mut};
+use crate::stage::Stage;
+use bevy_ecs::query::{With, Without};
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
+use froth_components::kind::{EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
 use super::links::Carriers;
 use crate::neighbours::kernel::Kernel;
 use crate::operators::quadratic::height_above;
@@ -102,4 +111,34 @@ pub fn project(
         place -= normal * (height / sum);
     }
     Some((place, normal))
+}
+
+/// Moves the material particles and projects them onto the film.
+pub fn advance_material(
+    carriers: Query<(&Position, &Normal, &InRegion, &ShapeOperator), With<EulerianParticle>>,
+    mut material: Query<
+        (&InRegion, &mut Position, &mut Normal, &mut Velocity, &mut VelocityGradient),
+        (With<LagrangianParticle>, Without<EulerianParticle>),
+    >,
+    lamellae: Res<Lamellae>,
+    stencil: Res<FilmStencil>,
+    clock: Res<Clock>,
+    mut faults: ResMut<Faults>,
+) {
+    let (positions, normals, regions, shapes) = columns(&carriers);
+    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let (regions, mut positions, mut normals, mut velocities, mut gradients) = columns_mut(&mut material);
+    let moving = MovingMaterial {
+        positions: positions.bypass_change_detection(),
+        normals: normals.bypass_change_detection(),
+        velocities: velocities.bypass_change_detection(),
+        gradients: gradients.bypass_change_detection(),
+        regions,
+    };
+    let rim = |region: InRegion| lamellae.films.iter().find(|film| film.region == region.0).and_then(|film| film.rim);
+    let lost = advance_all(moving, carriers, shapes, clock.step_length, rim);
+    if lost > 0 {
+        let detail = format!("of {lost} material particles is farther from the film than any carrier reaches");
+        faults.report(Fault::new(Stage::Advance, "position", detail));
+    }
 }

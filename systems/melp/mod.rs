@@ -13,6 +13,7 @@
 //!
 //! Carriers are Eulerian particles (E), material particles Lagrangian ones (L).
 
+pub mod carriers;
 pub mod gather;
 pub mod inertia;
 pub mod links;
@@ -23,3 +24,6 @@ pub mod normal_motion;
 pub mod redistribution;
 pub mod scatter;
 pub mod settings;
+pub mod sorting;
+pub mod state;
+pub mod step_length;

@@ -25,6 +25,18 @@
 //! `-2 u . grad s` (the film's own advection of its normal momentum) is left out: relative error `u/c`, a few per cent
 //! of the film's share of the inertia.
 
+use super::state::FilmStencil;
+use crate::rows::{columns, columns_mut};
+use bevy_ecs::query::{With, Without};
+use bevy_ecs::resource::Resource;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
+use froth_components::film::{MeanCurvature, ShapeOperator, SurfaceTension, Thickness};
+use froth_components::gas::{GasExponent, GasVolume, ReferencePressure, ReferenceVolume};
+use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
+use froth_components::lamella::Lamellae;
+use froth_components::material::{Atmosphere, Liquid};
+use froth_components::motion::{ExternalAcceleration, ExternalPressure, NormalSpeed, Velocity};
 use crate::operators::stencil::Stencil;
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use froth_components::gas::IdealGas;
@@ -75,7 +87,7 @@ pub struct EnclosedGas {
 }
 
 /// What the normal motion did over a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default)]
 pub struct NormalMotion {
     /// Displacement `zeta` along the normal, m, per carrier.
     pub displacement: Vec<f64>,
@@ -298,4 +310,112 @@ impl NormalForces<'_> {
         let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
         4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - film - rim
     }
+}
+
+/// Columns of the carriers that the normal motion reads and writes.
+type NormalColumns<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static Position,
+        &'static Normal,
+        &'static ShapeOperator,
+        &'static MeanCurvature,
+        &'static SurfaceTension,
+        &'static Thickness,
+        &'static ExternalAcceleration,
+        &'static ExternalPressure,
+        &'static Velocity,
+        &'static mut NormalSpeed,
+    ),
+    (With<EulerianParticle>, Without<BoundaryParticle>, Without<Region>),
+>;
+
+/// Advances every film along its normal by one step; places move later, in the `Advance` stage.
+pub fn advance_normal_motion(
+    mut carriers: NormalColumns,
+    walls: Query<&Position, With<BoundaryParticle>>,
+    mut gases: Query<(&mut GasVolume, &ReferenceVolume, &ReferencePressure, &GasExponent), With<Region>>,
+    stencil: Res<FilmStencil>,
+    lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
+    atmosphere: Res<Atmosphere>,
+    clock: Res<Clock>,
+    mut motion: ResMut<NormalMotion>,
+) {
+    let wall = if walls.is_empty() { &[][..] } else { columns(&walls) };
+    let (positions, normals, shapes, curvature, tension, thickness, pushes, pressures, velocities, mut speeds) =
+        columns_mut(&mut carriers);
+    let speeds = speeds.bypass_change_detection();
+    let inertia = Inertia { density: liquid.density, lamellae: &lamellae };
+    let tension: Vec<f64> = tension.iter().map(|t| t.0).collect();
+    let stencil = &stencil.0;
+    let load = |i: usize| {
+        let (n, u) = (normals[i].0, velocities[i].0);
+        let u = u - n * n.dot(u);
+        let film = liquid.density * thickness[i].0;
+        pressures[i].0 + film * (pushes[i].0.dot(n) + u.dot(shapes[i].0 * u))
+    };
+    let count = stencil.len();
+    let per_carrier = |f: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
+        (0..count).into_par_iter().with_min_len(256).map(f).collect()
+    };
+    let forces = NormalForces {
+        stencil,
+        positions,
+        wall,
+        normals,
+        tension: &tension,
+        squared_curvature: &per_carrier(&|i| squared_norm(&shapes[i].0)),
+        curvature: &per_carrier(&|i| curvature[i].0),
+        load: &per_carrier(&load),
+        tangential: &tension_gradients(stencil, positions, normals, &tension),
+        inertia: &inertia.per_area(thickness),
+        spacing: lamellae.spacing,
+    };
+    let mut state: Vec<f64> = speeds.iter().map(|s| s.0).collect();
+    motion.reset(count);
+    for (film, (mut volume, reference_volume, reference_pressure, exponent)) in lamellae.films.iter().zip(&mut gases) {
+        let law = IdealGas {
+            reference_pressure: reference_pressure.0,
+            reference_volume: reference_volume.0,
+            exponent: exponent.0,
+        };
+        let mut gas = film.rim.is_none().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
+        forces.advance(film.carriers.clone(), clock.step_length, &mut state, gas.as_mut(), &mut motion);
+        if let Some(gas) = gas {
+            volume.0 = gas.volume;
+        }
+    }
+    speeds.iter_mut().zip(&state).for_each(|(slot, s)| slot.0 = *s);
+}
+
+/// Inertia of the film and of the air that moves with it.
+struct Inertia<'a> {
+    density: f64,
+    lamellae: &'a Lamellae,
+}
+
+impl Inertia<'_> {
+    fn per_area(&self, thickness: &[Thickness]) -> Vec<f64> {
+        let mut inertia: Vec<f64> = thickness.iter().map(|eta| self.density * eta.0).collect();
+        for film in &self.lamellae.films {
+            inertia[film.carriers.clone()].iter_mut().for_each(|m| *m += film.air_mass);
+        }
+        inertia
+    }
+}
+
+/// `2 grad sigma` on every carrier, Pa: what the tension's gradient does to the liquid.
+fn tension_gradients(stencil: &Stencil, positions: &[Position], normals: &[Normal], tension: &[f64]) -> Vec<DVec3> {
+    (0..stencil.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|i| stencil.gradient(positions, normals, i, |j| tension[j]) * 2.0)
+        .collect()
+}
+
+/// Sum of the squared entries: of a shape operator, the sum of squared principal curvatures.
+fn squared_norm(m: &DMat3) -> f64 {
+    m.to_cols_array().iter().map(|v| v * v).sum()
 }

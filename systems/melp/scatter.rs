@@ -8,6 +8,15 @@
 //! # Source
 //! Deng 2022, Algorithm 4, Eqs 16 to 18 (APIC: Jiang 2015).
 
+use super::settings::Melp;
+use super::state::{FilmStencil, TangentialFlow, Transfers};
+use crate::rows::{columns, columns_mut};
+use bevy_ecs::query::{With, Without};
+use bevy_ecs::system::{Query, Res};
+use froth_components::film::{LiquidVolume, Surfactant, SurfactantAmount, Thickness};
+use froth_components::kind::{EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
+use froth_components::material::Liquid;
 use super::links::{Carriers, Link};
 use crate::neighbours::kernel::Kernel;
 use crate::operators::tangent::{MinimalRotation, outer, tangential, tangential_inverse};
@@ -112,4 +121,50 @@ pub fn interpolate(carriers: Carriers, targets: Targets, value: impl Fn(usize) -
         sum
     };
     (0..targets.positions.len()).into_par_iter().with_min_len(256).map(at).collect()
+}
+
+/// Scatters the flow to the material particles and sets the thickness they show.
+pub fn scatter_flow(
+    carriers: Query<(&Position, &Normal, &InRegion, &Surfactant, &Thickness), With<EulerianParticle>>,
+    mut material: Query<
+        (
+            &Position,
+            &Normal,
+            &InRegion,
+            &LiquidVolume,
+            &SurfactantAmount,
+            &mut Velocity,
+            &mut VelocityGradient,
+            &mut Thickness,
+        ),
+        (With<LagrangianParticle>, Without<EulerianParticle>),
+    >,
+    lamellae: Res<Lamellae>,
+    stencil: Res<FilmStencil>,
+    transfers: Res<Transfers>,
+    flow: Res<TangentialFlow>,
+    liquid: Res<Liquid>,
+    melp: Res<Melp>,
+) {
+    let (positions, normals, regions, surfactant, eulerian_thickness) = columns(&carriers);
+    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let (positions, normals, regions, volumes, amounts, mut velocities, mut gradients, mut thickness) =
+        columns_mut(&mut material);
+    let targets = Targets { positions, normals, regions, links: &transfers.links };
+    let change: Vec<DVec3> = flow.solved.iter().zip(&flow.gathered).map(|(new, old)| *new - *old).collect();
+    let elastic = liquid.elasticity > 0.0;
+    // What is shown follows the concentration; without surfactant there is only the carriers' thickness.
+    let shown: Vec<f64> = if elastic {
+        surfactant.iter().map(|gamma| gamma.0).collect()
+    } else {
+        eulerian_thickness.iter().map(|eta| eta.0).collect()
+    };
+    let carrier_flow = CarrierFlow { velocity: &flow.solved, change: &change, concentration: &shown };
+    let blend = Blend { affine: melp.affine, flip: melp.flip };
+    let mut taken = vec![0.0; positions.len()];
+    let velocities = velocities.bypass_change_detection();
+    scatter_all(carriers, carrier_flow, targets, blend, velocities, gradients.bypass_change_detection(), &mut taken);
+    for (l, eta) in thickness.bypass_change_detection().iter_mut().enumerate() {
+        eta.0 = if elastic { volumes[l].0 * taken[l] / amounts[l].0 } else { taken[l] };
+    }
 }

@@ -20,6 +20,11 @@ pub trait Plain: Copy + Send + Sync + 'static {
     /// Appends the scalars as floating-point numbers (for export and pictures).
     fn push_lanes(&self, out: &mut Vec<f64>);
 
+    /// Whether every scalar is finite; integers are.
+    fn is_finite(&self) -> bool {
+        true
+    }
+
     /// Bytes one value takes when written.
     #[must_use]
     fn byte_len() -> usize {
@@ -44,6 +49,9 @@ impl Plain for f64 {
     }
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.push(*self);
+    }
+    fn is_finite(&self) -> bool {
+        f64::is_finite(*self)
     }
 }
 
@@ -71,6 +79,9 @@ impl Plain for DVec3 {
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.extend_from_slice(&self.to_array());
     }
+    fn is_finite(&self) -> bool {
+        DVec3::is_finite(*self)
+    }
 }
 
 impl Plain for DMat3 {
@@ -83,6 +94,9 @@ impl Plain for DMat3 {
     }
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.extend_from_slice(&self.to_cols_array());
+    }
+    fn is_finite(&self) -> bool {
+        DMat3::is_finite(self)
     }
 }
 

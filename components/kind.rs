@@ -8,16 +8,19 @@ use bevy_ecs::component::Component;
 pub trait Kind: Component + Copy + Default {
     /// Stable name, used in checkpoints and messages.
     const NAME: &'static str;
+    /// What several of them are called in messages.
+    const PLURAL: &'static str;
 }
 
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $name:ident = $label:literal;)+) => {$(
+    ($($(#[$doc:meta])* $name:ident = $label:literal, $plural:literal;)+) => {$(
         $(#[$doc])*
         #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct $name;
 
         impl Kind for $name {
             const NAME: &'static str = $label;
+            const PLURAL: &'static str = $plural;
         }
     )+};
 }
@@ -25,11 +28,11 @@ macro_rules! kinds {
 kinds! {
     /// Tracks the film and is the stencil on which its equations are solved (Deng 2022, §4). Moves with the film's
     /// normal velocity; its tangential place is free and is kept uniform by redistribution.
-    EulerianParticle = "eulerian";
+    EulerianParticle = "eulerian", "eulerian particles";
     /// Carries liquid, surfactant and momentum with the flow (Deng 2022, §4).
-    LagrangianParticle = "lagrangian";
+    LagrangianParticle = "lagrangian", "lagrangian particles";
     /// A fixed particle beyond the rim of an open film, which fills the kernels there (Deng 2022, §4.8).
-    BoundaryParticle = "boundary";
+    BoundaryParticle = "boundary", "boundary particles";
     /// A gas volume enclosed by films, or the air on one side of an open film.
-    Region = "region";
+    Region = "region", "regions";
 }

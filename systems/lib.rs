@@ -1,11 +1,17 @@
 //! What happens in froth: one folder per subject, one file per stage; every system is a thin shell over pure functions.
 //!
 //! * [`stage`]: the order of a step, fixed once.
+//! * [`plan`]: which systems run in which stage, in which order, and what each requires.
+//! * [`clock`]: the length of a step.
+//! * [`observe`]: measured numbers, faults, times.
 //! * [`rows`]: particles as rows of contiguous columns; the registry of columns; sorting.
 //! * [`neighbours`]: cell lists, compressed rows of neighbours, kernels.
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
+pub mod clock;
 pub mod neighbours;
+pub mod observe;
 pub mod operators;
+pub mod plan;
 pub mod rows;
 pub mod stage;

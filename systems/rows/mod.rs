@@ -8,5 +8,6 @@ mod access;
 pub mod morton;
 pub mod reduce;
 pub mod registry;
+pub mod state;
 
 pub use access::{columns, columns_mut, fill_column, read_column, spawn_rows};

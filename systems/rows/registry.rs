@@ -1,9 +1,11 @@
 //! The registry of columns: the one description that row permutation, checkpoints and export use.
 
+use bevy_ecs::entity::Entity;
 use bevy_ecs::query::With;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 use froth_components::column::{Column, Plain};
+use froth_components::identity::StableId;
 use froth_components::kind::Kind;
 use rayon::prelude::*;
 
@@ -11,6 +13,31 @@ use rayon::prelude::*;
 #[derive(Resource, Default)]
 pub struct ColumnRegistry {
     entries: Vec<ColumnEntry>,
+    kinds: Vec<KindEntry>,
+}
+
+/// What the registry knows of one kind.
+#[derive(Clone, Copy)]
+pub struct KindEntry {
+    /// Name of the kind.
+    pub name: &'static str,
+    count: fn(&mut World) -> usize,
+    spawn: fn(&mut World, usize),
+    clear: fn(&mut World),
+}
+
+impl KindEntry {
+    /// Number of rows.
+    #[must_use]
+    pub fn count(&self, world: &mut World) -> usize {
+        (self.count)(world)
+    }
+
+    /// Replaces all rows by `count` new ones, every column at its default.
+    pub fn respawn(&self, world: &mut World, count: usize) {
+        (self.clear)(world);
+        (self.spawn)(world, count);
+    }
 }
 
 /// What the registry knows of one column.
@@ -31,6 +58,8 @@ pub struct ColumnEntry {
     save: fn(&mut World) -> Vec<u8>,
     load: fn(&mut World, &[u8]),
     numbers: fn(&mut World) -> Vec<f64>,
+    first_not_finite: fn(&mut World) -> Option<usize>,
+    stable_id: fn(&mut World, usize) -> Option<u64>,
 }
 
 impl ColumnEntry {
@@ -49,6 +78,18 @@ impl ColumnEntry {
     #[must_use]
     pub fn numbers(&self, world: &mut World) -> Vec<f64> {
         (self.numbers)(world)
+    }
+
+    /// The first row whose value has a NaN or an infinity.
+    #[must_use]
+    pub fn first_not_finite(&self, world: &mut World) -> Option<usize> {
+        (self.first_not_finite)(world)
+    }
+
+    /// Stable id of the particle in a row of this column's kind; `None` where the kind has no such ids.
+    #[must_use]
+    pub fn stable_id(&self, world: &mut World, row: usize) -> Option<u64> {
+        (self.stable_id)(world, row)
     }
 }
 
@@ -76,7 +117,12 @@ impl ColumnRegistry {
             return;
         }
         world.register_required_components::<K, C>();
-        world.resource_mut::<Self>().entries.push(ColumnEntry {
+        let mut registry = world.resource_mut::<Self>();
+        if registry.kinds.iter().all(|kind| kind.name != K::NAME) {
+            let (count, spawn, clear) = (count_rows::<K>, super::spawn_rows::<K>, despawn_rows::<K>);
+            registry.kinds.push(KindEntry { name: K::NAME, count, spawn, clear });
+        }
+        registry.entries.push(ColumnEntry {
             kind: K::NAME,
             name: C::NAME,
             unit: C::UNIT,
@@ -87,6 +133,8 @@ impl ColumnRegistry {
             save: save_column::<K, C>,
             load: load_column::<K, C>,
             numbers: column_numbers::<K, C>,
+            first_not_finite: first_not_finite::<K, C>,
+            stable_id: stable_id::<K>,
         });
     }
 
@@ -94,6 +142,22 @@ impl ColumnRegistry {
     #[must_use]
     pub fn entries(&self) -> &[ColumnEntry] {
         &self.entries
+    }
+
+    /// All kinds that have columns.
+    #[must_use]
+    pub fn kinds(&self) -> &[KindEntry] {
+        &self.kinds
+    }
+
+    /// Creates the table of every kind, in the order of registration. Queries over several kinds visit tables in the order
+    /// of their creation: a run and its resumption must agree on it.
+    pub fn create_tables(world: &mut World) {
+        let kinds = world.get_resource_or_init::<Self>().kinds.clone();
+        for kind in kinds {
+            kind.respawn(world, 1);
+            kind.respawn(world, 0);
+        }
     }
 
     /// The columns of the kind called `kind`.
@@ -161,11 +225,33 @@ fn column_numbers<K: Kind, C: Column>(world: &mut World) -> Vec<f64> {
     numbers
 }
 
+fn first_not_finite<K: Kind, C: Column>(world: &mut World) -> Option<usize> {
+    let mut state = world.query_filtered::<&C, With<K>>();
+    let tables = state.contiguous_iter(world).expect("invariant: columns are stored in tables");
+    tables.flatten().position(|value| !value.value().is_finite())
+}
+
+fn stable_id<K: Kind>(world: &mut World, row: usize) -> Option<u64> {
+    let mut state = world.query_filtered::<&StableId, With<K>>();
+    state.contiguous_iter(world).expect("invariant: columns are stored in tables").flatten().nth(row).map(|id| id.0)
+}
+
+fn count_rows<K: Kind>(world: &mut World) -> usize {
+    world.query_filtered::<(), With<K>>().iter(world).count()
+}
+
+fn despawn_rows<K: Kind>(world: &mut World) {
+    let mut state = world.query_filtered::<Entity, With<K>>();
+    let rows: Vec<Entity> = state.iter(world).collect();
+    for row in rows {
+        world.despawn(row);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rows::{fill_column, read_column, spawn_rows};
-    use froth_components::identity::StableId;
     use froth_components::kind::EulerianParticle;
     use froth_components::motion::{Position, Velocity};
     use glam::DVec3;
@@ -184,10 +270,7 @@ mod tests {
     fn permuting_rows_moves_every_column_alike() {
         let mut world = three_rows();
         ColumnRegistry::permute_rows::<EulerianParticle>(&mut world, &[2, 0, 1]);
-        assert_eq!(
-            read_column::<EulerianParticle, StableId>(&mut world),
-            [StableId(9), StableId(7), StableId(8)]
-        );
+        assert_eq!(read_column::<EulerianParticle, StableId>(&mut world), [StableId(9), StableId(7), StableId(8)]);
         assert_eq!(read_column::<EulerianParticle, Position>(&mut world)[0], Position(DVec3::splat(2.0)));
     }
 

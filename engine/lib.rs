@@ -1,1 +1,3 @@
 //! Assembles and runs: scene files, methods (schedules), run loop, checkpoints, pictures, verification.
+
+pub mod picture;

@@ -1,4 +1,6 @@
 //! Assembles and runs: scene files, methods (schedules), run loop, checkpoints, pictures, verification.
 
 pub mod errors;
+pub mod method;
+pub mod picture;
 pub mod scene;

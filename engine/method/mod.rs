@@ -1,0 +1,3 @@
+//! Methods: schedules over shared components.
+
+pub mod melp;

@@ -30,7 +30,7 @@ pub struct AnimationSettings {
 
 impl Default for AnimationSettings {
     fn default() -> Self {
-        Self { frames_per_second: 25, largest_edge: 400, plays: 0 }
+        Self { frames_per_second: 25, largest_edge: 384, plays: 0 }
     }
 }
 
@@ -174,7 +174,7 @@ fn shrink(picture: &RgbImage, largest_edge: u32) -> RgbImage {
 
 fn encode(frame: &RgbImage) -> Result<Vec<u8>, PictureError> {
     let mut encoded = Vec::new();
-    PngEncoder::new_with_quality(&mut encoded, CompressionType::Best, FilterType::Adaptive).write_image(
+    PngEncoder::new_with_quality(&mut encoded, CompressionType::Default, FilterType::Adaptive).write_image(
         frame.as_raw(),
         frame.width(),
         frame.height(),

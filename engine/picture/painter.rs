@@ -71,9 +71,12 @@ impl Painter {
     fn draw(&self, films: &[FilmPoints], shader: &Shader, width: u32) -> Result<RgbImage, PictureError> {
         let size = (width, self.settings.height);
         let aspect = f64::from(size.0) / f64::from(size.1);
-        let framed = || {
-            let all: Vec<_> = films.iter().flat_map(|film| film.positions.iter().copied()).collect();
-            Camera::framing_points(&all, aspect)
+        let framed = || match films {
+            [film] => Camera::framing_points(film.positions, aspect),
+            _ => Camera::framing_points(
+                &films.iter().flat_map(|film| film.positions).copied().collect::<Vec<_>>(),
+                aspect,
+            ),
         };
         let camera = self.settings.camera.map_or_else(framed, Ok)?;
         let samples = self.settings.samples as usize;
@@ -207,6 +210,13 @@ mod tests {
         let empty = FilmPoints { positions: &[], normals: &[], values: &[], spacing: 1.0 };
         assert!(matches!(painter("()").paint(&empty), Err(PictureError::NoPoints)));
         assert!(matches!(painter("()").paint_all(&[]), Err(PictureError::NoPoints)));
+    }
+
+    #[test]
+    fn a_spacing_far_too_large_is_refused_before_it_takes_hours() {
+        let bubble = Bubble::new(40_000);
+        let film = FilmPoints { spacing: 0.4, ..bubble.film() };
+        assert!(matches!(painter("()").paint(&film), Err(PictureError::OutOfRange { value: 0.4, .. })));
     }
 
     #[test]

@@ -42,7 +42,7 @@ impl Drawing<'_> {
         let view = self.camera.view(width as f64, height as f64)?;
         let edge = TILE_SAMPLES / self.samples * self.samples;
         let grid = TileGrid::new(width, height, edge);
-        let splats: Vec<_> = films.iter().map(|film| TiledSplats::new(&view, film, &grid)).collect();
+        let splats = films.iter().map(|film| TiledSplats::new(&view, film, &grid)).collect::<Result<Vec<_>, _>>()?;
         let tiles: Vec<Vec<Rgb<u8>>> = (0..grid.len())
             .into_par_iter()
             .map_init(|| TileLayers::new(edge), |layers, tile| self.draw_tile(&view, &grid, &splats, tile, layers))

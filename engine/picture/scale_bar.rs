@@ -78,7 +78,7 @@ impl ScaleBar {
             .collect();
         for (end, value) in [(0.0, low), (1.0, high)] {
             if !labels.iter().any(|&(at, _)| at == end) {
-                labels.push((end, number(value, 0.1 * step)));
+                labels.push((end, without_idle_zeros(number(value, 0.1 * step))));
             }
         }
         labels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -120,6 +120,12 @@ fn number(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".to_owned() } else { text }
+}
+
+/// `1.30` as `1.3`; whole numbers and powers of ten stay as they are.
+fn without_idle_zeros(text: String) -> String {
+    let trimmed = text.trim_end_matches('0').trim_end_matches('.');
+    if text.contains('.') && !text.contains('e') { trimmed.to_owned() } else { text }
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ fn develop(light: Vec3) -> Vec3 {
 /// Linear level above which highlights are compressed.
 const KNEE: f32 = 0.5;
 /// Share of grey mixed into the brightest light.
-const SPILL: f32 = 0.6;
+const SPILL: f32 = 0.45;
 
 fn shoulder(level: f32) -> f32 {
     let over = (level - KNEE) / (1.0 - KNEE);

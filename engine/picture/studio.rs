@@ -115,7 +115,7 @@ impl Studio {
             ..Softbox::facing(middle, half_size, radiance)
         };
         let strip =
-            |middle| Softbox { softness: 0.35, ..Softbox::facing(middle, Vec2::new(0.45, 1.4), Vec3::splat(0.9)) };
+            |middle| Softbox { softness: 0.35, ..Softbox::facing(middle, Vec2::new(0.45, 1.4), Vec3::splat(1.3)) };
         let lights = vec![
             window(Vec3::new(-0.75, 0.62, 0.62), Vec2::new(0.33, 0.46), 20.0 * Vec3::new(0.97, 1.0, 1.04)),
             window(Vec3::new(0.95, 0.35, 0.45), Vec2::new(0.20, 0.42), 8.0 * Vec3::new(1.05, 1.0, 0.94)),
@@ -140,7 +140,7 @@ fn walls(direction: Vec3) -> Vec3 {
     let front = soft_step(-0.9, 0.7, direction.z);
     let glow = soft_step(0.6, 1.0, direction.dot(GLOW));
     let backdrop = soft_step(0.93, 0.995, -direction.z);
-    let tent = (0.5 + 1.5 * ceiling) * (0.45 + 0.75 * front) + 2.4 * glow;
+    let tent = (0.6 + 1.9 * ceiling) * (0.5 + 0.75 * front) + 2.8 * glow;
     Vec3::new(0.99, 1.0, 1.02) * (tent * (1.0 - backdrop) + 0.22 * backdrop)
 }
 

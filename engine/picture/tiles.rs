@@ -4,12 +4,19 @@
 //! The order of every sum is therefore fixed by the input, for any number of threads.
 
 use super::camera::View;
+use super::error::PictureError;
 use super::film::FilmPoints;
 use super::splat::{Splat, splat_of_point};
+use glam::Vec2;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Points per chunk. Part of the result: another size sums in another order.
 const CHUNK: usize = 16_384;
+
+/// Ellipses over one sample, on average, beyond which a film is refused: some 200 sheets behind each other.
+const MOST_OVERLAPS: f64 = 4000.0;
+/// Samples under all ellipses that are drawn however small the picture is.
+const ALWAYS_DRAWN: f64 = 3e8;
 
 /// A picture cut into square tiles.
 #[derive(Clone, Copy, Debug)]
@@ -68,16 +75,24 @@ pub(super) struct TiledSplats {
 
 impl TiledSplats {
     /// Projects and sorts all points of a film.
-    pub(super) fn new(view: &View, film: &FilmPoints, grid: &TileGrid) -> Self {
-        let chunks = (0..film.positions.len().div_ceil(CHUNK))
+    ///
+    /// # Errors
+    /// [`PictureError::OutOfRange`] if the ellipses overlap so often that the spacing cannot be right.
+    pub(super) fn new(view: &View, film: &FilmPoints, grid: &TileGrid) -> Result<Self, PictureError> {
+        let projected: Vec<Vec<Splat>> = (0..film.positions.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let end = ((chunk + 1) * CHUNK).min(film.positions.len());
-                let splats = (chunk * CHUNK..end).filter_map(|row| splat_of_point(view, film, row)).collect();
-                sort_by_tile(splats, grid)
+                (chunk * CHUNK..end).filter_map(|row| splat_of_point(view, film, row)).collect()
             })
             .collect();
-        Self { chunks }
+        let covered: f64 = projected.iter().flatten().map(|splat| visible_box(splat, view)).sum();
+        if covered > (MOST_OVERLAPS * view.width * view.height).max(ALWAYS_DRAWN) {
+            let (name, allowed) = ("the spacing of the film", "about the square root of its area per point");
+            return Err(PictureError::OutOfRange { name, value: film.spacing, allowed });
+        }
+        let chunks = projected.into_par_iter().map(|splats| sort_by_tile(splats, grid)).collect();
+        Ok(Self { chunks })
     }
 
     /// The ellipses that touch a tile, in the order of the points.
@@ -87,6 +102,14 @@ impl TiledSplats {
             chunk.order[rows].iter().map(|&row| &chunk.splats[row as usize])
         })
     }
+}
+
+/// Samples of the picture in the box around an ellipse.
+fn visible_box(splat: &Splat, view: &View) -> f64 {
+    let size = Vec2::new(view.width as f32, view.height as f32);
+    let low = (splat.centre - splat.reach).clamp(Vec2::ZERO, size);
+    let high = (splat.centre + splat.reach).clamp(Vec2::ZERO, size);
+    f64::from((high - low).element_product())
 }
 
 /// Counting sort of (tile, ellipse) pairs.

@@ -1,6 +1,6 @@
 //! The gas that a closed film encloses, carried by its [`Region`](crate::kind::Region).
-
-use bevy_ecs::component::Component;
+//!
+//! A region without gas of its own (the air on one side of an open film) has reference volume 0.
 
 columns! {
     /// Volume `V` of the enclosed gas as evolved by the film's own motion, m^3. It is a state, not a measurement:
@@ -12,25 +12,31 @@ columns! {
     pub struct ReferenceVolume(f64), "reference_volume", "m^3";
     /// Pressure `p0` of the gas at its reference volume, Pa.
     pub struct ReferencePressure(f64), "reference_pressure", "Pa";
+    /// Exponent `gamma` of the gas law, dimensionless: 1 isothermal, 1.4 adiabatic air.
+    pub struct GasExponent(f64), "gas_exponent", "1";
 }
 
-/// How the enclosed gas answers compression: `p V^gamma` is constant.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub struct GasLaw {
-    /// Ratio `gamma`, dimensionless: 1 isothermal, 1.4 adiabatic air.
+/// An ideal gas in a closed region: `p V^gamma` is constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdealGas {
+    /// Pressure at the reference volume, Pa.
+    pub reference_pressure: f64,
+    /// Reference volume, m^3.
+    pub reference_volume: f64,
+    /// Exponent `gamma`, dimensionless.
     pub exponent: f64,
 }
 
-impl GasLaw {
-    /// Pressure at volume `v`, given pressure `p0` at volume `v0`.
+impl IdealGas {
+    /// Pressure at `volume`, Pa.
     #[must_use]
-    pub fn pressure(self, p0: f64, v0: f64, v: f64) -> f64 {
-        p0 * (v0 / v).powf(self.exponent)
+    pub fn pressure(&self, volume: f64) -> f64 {
+        self.reference_pressure * (self.reference_volume / volume).powf(self.exponent)
     }
 
-    /// Stiffness `-dp/dV` at pressure `p` and volume `v`, Pa/m^3.
+    /// Stiffness `-dp/dV` at `volume`, Pa/m^3.
     #[must_use]
-    pub fn stiffness(self, p: f64, v: f64) -> f64 {
-        self.exponent * p / v
+    pub fn stiffness(&self, volume: f64) -> f64 {
+        self.exponent * self.pressure(volume) / volume
     }
 }

@@ -4,7 +4,7 @@
 //! * [`kind`]: what an entity is (Eulerian particle, Lagrangian particle, boundary particle, region).
 //! * [`motion`], [`film`], [`gas`], [`identity`]: what it carries, one physical idea per component.
 //! * [`column`]: how a component is laid out as scalars, for row permutation, checkpoints and export.
-//! * [`clock`], [`material`]: the few quantities that belong to the whole run.
+//! * [`lamella`]: the films of a run; [`clock`], [`material`]: the few quantities that belong to the whole run.
 //!
 //! Conventions (units, signs, orientation) are drawn once in [`film`].
 
@@ -17,6 +17,7 @@ pub mod film;
 pub mod gas;
 pub mod identity;
 pub mod kind;
+pub mod lamella;
 pub mod material;
 pub mod motion;
 pub mod quantity;

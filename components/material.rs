@@ -1,5 +1,6 @@
 //! What the liquid and the air around are made of: one value for the whole run.
 
+use crate::authored::liquid as authored;
 use bevy_ecs::resource::Resource;
 
 /// The film's liquid and its surfactant.
@@ -37,6 +38,24 @@ impl Liquid {
     #[must_use]
     pub fn tension_at(&self, surfactant: f64) -> f64 {
         self.surface_tension + self.elasticity - self.thermal_energy() * surfactant
+    }
+}
+
+impl From<authored::Liquid> for Liquid {
+    fn from(liquid: authored::Liquid) -> Self {
+        Self {
+            density: liquid.density.si(),
+            surface_tension: liquid.surface_tension.si(),
+            elasticity: liquid.elasticity.si(),
+            viscosity: liquid.viscosity.si(),
+            temperature: liquid.temperature.si(),
+        }
+    }
+}
+
+impl From<authored::Atmosphere> for Atmosphere {
+    fn from(air: authored::Atmosphere) -> Self {
+        Self { pressure: air.pressure.si(), density: air.density.si() }
     }
 }
 

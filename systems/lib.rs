@@ -9,9 +9,11 @@
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
 pub mod clock;
+pub mod melp;
 pub mod neighbours;
 pub mod observe;
 pub mod operators;
 pub mod plan;
 pub mod rows;
+pub mod sampling;
 pub mod stage;

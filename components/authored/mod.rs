@@ -22,3 +22,7 @@ use serde::Deserialize;
 /// What a user calls an entity, in messages and tables.
 #[derive(Component, Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Name(pub String);
+
+/// Which entity of its scene file this is, counted from 0. With the scene's seed it seeds the entity's noise.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PlaceInScene(pub u32);

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use glam::DVec3;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Unexpected, Visitor};
 
 use super::vector::expecting_vector;
 use super::{Dimension, Quantity, Refusal, RefusalKind, Time, Vector};
@@ -134,8 +134,10 @@ impl<T: KeyframeValue> KeyframedVisitor<T> {
     }
 
     fn scalar<E: serde::de::Error>(&self, value: Part<T>) -> Result<Keyframed<T>, E> {
-        let Part::Number(number) = value else { return Err(E::invalid_length(0, self)) };
-        self.constant(&[number])
+        let Part::Number(number) = value else { unreachable!("invariant: a number or a text is no keyframe") };
+        T::from_parts(&[number])
+            .map(Keyframed::constant)
+            .ok_or_else(|| E::invalid_type(Unexpected::Other("a single value"), self))
     }
 }
 

@@ -89,6 +89,7 @@ impl<D: Dimension> Quantity<D> {
             return Err(Self::wrong_dimension(text, unit.exponents));
         }
         Self::finite(unit.factor * number + unit.offset)
+            .map_err(|refusal| Refusal { message: format!("`{}` is not a finite number", quote(text)), ..refusal })
     }
 
     /// A value in SI units, unless it is NaN or infinite.
@@ -167,8 +168,12 @@ fn quote(text: &str) -> String {
 /// The known name most like `name`, if any is near enough to be what was meant.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const NEAR_ENOUGH: f64 = 0.7;
-    let name = quote(name);
-    let similarity = |candidate: &str| strsim::jaro_winkler(&name.to_lowercase(), &candidate.to_lowercase());
+    let name = quote(name).to_lowercase();
+    let similarity = |candidate: &str| {
+        let candidate = candidate.to_lowercase();
+        let is_one_slip_away = name.len() > 2 && strsim::osa_distance(&name, &candidate) == 1;
+        strsim::jaro_winkler(&name, &candidate).max(if is_one_slip_away { NEAR_ENOUGH } else { 0.0 })
+    };
     known
         .into_iter()
         .map(|candidate| (similarity(candidate), candidate))

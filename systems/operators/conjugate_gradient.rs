@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
-    /// Largest allowed `|r| / |r0|`, dimensionless, in the preconditioned norm `sqrt(r . r/diag)`.
+    /// Largest allowed `|r| / |b|`, dimensionless, in the preconditioned norm `sqrt(r . r/diag)`.
     pub tolerance: f64,
     /// Most iterations before giving up.
     pub max_iterations: u32,
@@ -21,17 +21,17 @@ pub struct StopRule {
 pub struct SolveInfo {
     /// Iterations done.
     pub iterations: u32,
-    /// Final `|r| / |r0|`, dimensionless.
+    /// Final `|r| / |b|`, dimensionless.
     pub residual: f64,
 }
 
 /// A solve that did not reach its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("no convergence after {iterations} iterations: residual {residual:.2e} of the first, {tolerance:.2e} wanted")]
+#[error("no convergence after {iterations} iterations: residual {residual:.2e} of the right-hand side, {tolerance:.2e} wanted")]
 pub struct NotConverged {
     /// Iterations done.
     pub iterations: u32,
-    /// `|r| / |r0|` at the end; NaN if the system itself was not finite or not positive definite.
+    /// `|r| / |b|` at the end; NaN if the system itself was not finite or not positive definite.
     pub residual: f64,
     /// What was wanted.
     pub tolerance: f64,
@@ -71,10 +71,10 @@ pub fn solve(
         remove_mean(residual);
     }
     direction.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, p)| *p = residual[i] / diagonal[i]);
-    let first = ordered_sum(count, 0.0, |i| residual[i] * direction[i]);
-    let mut rho = first;
+    let whole = ordered_sum(count, 0.0, |i| b[i] * b[i] / diagonal[i]);
+    let mut rho = ordered_sum(count, 0.0, |i| residual[i] * direction[i]);
     let mut iterations = 0;
-    let ratio = |rho: f64| if first > 0.0 { (rho / first).sqrt() } else { 0.0 };
+    let ratio = |rho: f64| if rho > 0.0 { (rho / whole).sqrt() } else { rho };
     while ratio(rho) > stop.tolerance {
         if iterations == stop.max_iterations {
             return Err(NotConverged { iterations, residual: ratio(rho), tolerance: stop.tolerance });
@@ -100,7 +100,7 @@ pub fn solve(
             .with_min_len(2048)
             .for_each(|(i, p)| *p = residual[i] / diagonal[i] + turn * *p);
     }
-    if first.is_finite() {
+    if rho.is_finite() {
         Ok(SolveInfo { iterations, residual: ratio(rho) })
     } else {
         Err(NotConverged { iterations, residual: f64::NAN, tolerance: stop.tolerance })

@@ -1,0 +1,598 @@
+//! What can be wrong with a scene file. Each fault has a stable code with a page of its own ([`crate::errors`]).
+//!
+//! A message says what is wrong; the label points at where; the help says what to write instead.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use miette::{Diagnostic, SourceSpan};
+use thiserror::Error;
+
+use super::text::SceneText;
+
+/// A fault of a scene file. Codes: `F000x` the file, `F001x` its syntax, `F002x` names, `F003x` values, `F004x` meaning, `F005x` size.
+#[derive(Debug, Error, Diagnostic)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// No such file.
+    #[error("there is no file `{}`", path.display())]
+    #[diagnostic(code(F0001), help("{}", missing_help(nearest.as_deref())))]
+    Missing {
+        /// The path as it was given.
+        path: PathBuf,
+        /// A file of nearly that name in the same folder.
+        nearest: Option<String>,
+    },
+
+    /// A folder, not a file.
+    #[error("`{}` is a folder, not a scene file", path.display())]
+    #[diagnostic(code(F0002), help("name a file in it, such as `{}`", path.join("scene.ron").display()))]
+    Directory {
+        /// The path as it was given.
+        path: PathBuf,
+    },
+
+    /// Nothing in the file but spaces and comments.
+    #[error("`{name}` is empty")]
+    #[diagnostic(code(F0003), help("a scene begins with `Scene(title: \"...\", method: Melp(), ...`"))]
+    Empty {
+        /// Name of the file.
+        name: String,
+    },
+
+    /// Not a text file.
+    #[error("`{name}` is not a text file: byte {offset} is no UTF-8 text")]
+    #[diagnostic(code(F0004), help("a scene is a text file in RON; a checkpoint is resumed with `froth resume`"))]
+    NotText {
+        /// Name of the file.
+        name: String,
+        /// Offset of the first byte that is no text.
+        offset: usize,
+    },
+
+    /// Longer than any scene.
+    #[error("`{name}` has {bytes} bytes; a scene has at most {limit}")]
+    #[diagnostic(
+        code(F0005),
+        help("is this a scene file? Thousands of films are better made by a program that calls froth as a library")
+    )]
+    TooLong {
+        /// Name of the file.
+        name: String,
+        /// Its length; the limit plus one where the file does not say.
+        bytes: u64,
+        /// Longest allowed, bytes.
+        limit: u64,
+    },
+
+    /// The system refuses to read the file.
+    #[error("`{}` cannot be read", path.display())]
+    #[diagnostic(code(F0006), help("a scene must be a plain file that you may read"))]
+    Unreadable {
+        /// The path as it was given.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        cause: std::io::Error,
+    },
+
+    /// Not RON.
+    #[error("the file is not RON: {problem}")]
+    #[diagnostic(code(F0010), help("{help}"))]
+    Syntax {
+        /// What the reader wanted.
+        problem: String,
+        /// What to look for.
+        help: &'static str,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("here")]
+        at: SourceSpan,
+    },
+
+    /// Brackets within brackets without end.
+    #[error("brackets are nested too deeply")]
+    #[diagnostic(code(F0011), help("no scene needs more than ten levels"))]
+    TooDeep {
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where the limit was reached.
+        #[label("one level too many")]
+        at: SourceSpan,
+    },
+
+    /// No component of that name.
+    #[error("unknown component `{found}`")]
+    #[diagnostic(code(F0020), help("{}", names_help(nearest.as_deref(), "components", known)))]
+    UnknownComponent {
+        /// The name in the file.
+        found: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// All components, in alphabetical order.
+        known: Vec<String>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("no component has this name")]
+        at: SourceSpan,
+    },
+
+    /// No field of that name.
+    #[error("`{owner}` has no field `{found}`")]
+    #[diagnostic(code(F0021), help("{}", names_help(nearest.as_deref(), "fields", known)))]
+    UnknownField {
+        /// What the field would belong to.
+        owner: String,
+        /// The name in the file.
+        found: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// All fields of the owner.
+        known: Vec<String>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("no field has this name")]
+        at: SourceSpan,
+    },
+
+    /// A field has a choice of names, and this is none of them.
+    #[error("`{found}` is no choice for `{field}`")]
+    #[diagnostic(code(F0022), help("{}", names_help(nearest.as_deref(), "choices", known)))]
+    UnknownChoice {
+        /// The name in the file.
+        found: String,
+        /// Path of the field.
+        field: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// All choices.
+        known: Vec<String>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("not a choice")]
+        at: SourceSpan,
+    },
+
+    /// No method of that name.
+    #[error("unknown method `{found}`")]
+    #[diagnostic(code(F0023), help("{}", names_help(nearest.as_deref(), "methods", known)))]
+    UnknownMethod {
+        /// The name in the file.
+        found: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// All available methods.
+        known: Vec<String>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("no method has this name")]
+        at: SourceSpan,
+    },
+
+    /// A published method that froth does not have yet.
+    #[error("the method `{method}` is not available yet")]
+    #[diagnostic(code(F0024), help("choose one of: {}", known.join(", ")))]
+    MethodNotAvailable {
+        /// The name in the file.
+        method: String,
+        /// All available methods.
+        known: Vec<String>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("known, but not available")]
+        at: SourceSpan,
+    },
+
+    /// A field without a default is not given.
+    #[error("`{owner}` lacks the field `{field}`")]
+    #[diagnostic(code(F0025), help("add `{field}: ...`; it has no default"))]
+    MissingField {
+        /// What the field belongs to.
+        owner: String,
+        /// The field.
+        field: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The owner.
+        #[label("`{field}` is missing here")]
+        at: SourceSpan,
+    },
+
+    /// A field is given twice.
+    #[error("`{owner}` has the field `{field}` twice")]
+    #[diagnostic(code(F0026), help("keep one of them"))]
+    DuplicateField {
+        /// What the field belongs to.
+        owner: String,
+        /// The field.
+        field: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The second one.
+        #[label("given again")]
+        at: SourceSpan,
+    },
+
+    /// An entity has two components of one kind.
+    #[error("the entity has two `{component}` components")]
+    #[diagnostic(
+        code(F0027),
+        help("keep one of them, or write the other into an entity of its own: `[ ... ], [ ... ]`")
+    )]
+    DuplicateComponent {
+        /// The component.
+        component: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The second one.
+        #[label("given again")]
+        at: SourceSpan,
+        /// The first one.
+        #[label("given first")]
+        first: SourceSpan,
+    },
+
+    /// A value of another kind than wanted.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0030), help("{help}"))]
+    WrongType {
+        /// Path of the field; empty where there is none.
+        field: String,
+        /// What is there and what is wanted.
+        message: String,
+        /// What to write.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("not what is wanted here")]
+        at: SourceSpan,
+    },
+
+    /// A unit that does not exist.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0031), help("{help}"))]
+    UnknownUnit {
+        /// Path of the field.
+        field: String,
+        /// What is wrong.
+        message: String,
+        /// Nearest unit and list of units.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("unknown unit")]
+        at: SourceSpan,
+    },
+
+    /// A unit of another dimension.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0032), help("{help}"))]
+    WrongDimension {
+        /// Path of the field.
+        field: String,
+        /// What is there and what is wanted.
+        message: String,
+        /// Units of the wanted dimension.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("wrong dimension")]
+        at: SourceSpan,
+    },
+
+    /// NaN or infinity.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0033), help("{help}"))]
+    NotFinite {
+        /// Path of the field.
+        field: String,
+        /// What is wrong.
+        message: String,
+        /// What is wanted.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("not a finite number")]
+        at: SourceSpan,
+    },
+
+    /// A value outside what the field can take.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0034), help("{help}"))]
+    OutOfRange {
+        /// Path of the field.
+        field: String,
+        /// What is wrong.
+        message: String,
+        /// The range.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("out of range")]
+        at: SourceSpan,
+    },
+
+    /// Two values of one component that cannot both hold.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0035), help("{help}"))]
+    Contradiction {
+        /// Path of what holds both.
+        field: String,
+        /// What is wrong.
+        message: String,
+        /// How they must relate.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("these do not go together")]
+        at: SourceSpan,
+    },
+
+    /// A component of the user's own refuses a value in its own words.
+    #[error("{}{message}", prefix(field))]
+    #[diagnostic(code(F0036), help("this rule is the component's own; its documentation should say more"))]
+    Refused {
+        /// Path of the field.
+        field: String,
+        /// The component's words.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// Where.
+        #[label("refused")]
+        at: SourceSpan,
+    },
+
+    /// Nothing to simulate.
+    #[error("the scene has no film")]
+    #[diagnostic(
+        code(F0040),
+        help("add an entity such as `[ Sphere(radius: \"5 cm\"), Film(thickness: Uniform(\"500 nm\")) ]`")
+    )]
+    NoFilm {
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The entities.
+        #[label("none of these is a film")]
+        at: SourceSpan,
+    },
+
+    /// A component that means nothing without another.
+    #[error("`{component}` needs {} in the same entity", one_of(needs))]
+    #[diagnostic(code(F0041), help("write both into one list: `[ {component}(...), {}(...) ]`", needs.first().copied().unwrap_or_default()))]
+    MissingCompanion {
+        /// The component that is there.
+        component: String,
+        /// One of these is missing.
+        needs: Vec<&'static str>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("needs another component beside it")]
+        at: SourceSpan,
+    },
+
+    /// A film of two shapes.
+    #[error("the entity has two shapes, `{first_shape}` and `{second_shape}`")]
+    #[diagnostic(code(F0042), help("write each film into an entity of its own: `[ ... ], [ ... ]`"))]
+    SeveralShapes {
+        /// The first one.
+        first_shape: String,
+        /// The second one.
+        second_shape: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The second one.
+        #[label("a second shape")]
+        at: SourceSpan,
+        /// The first one.
+        #[label("the first shape")]
+        first: SourceSpan,
+    },
+
+    /// A method cannot do what a component asks for.
+    #[error("the method `{method}` cannot honour `{component}`")]
+    #[diagnostic(code(F0043), help("take it out of the scene, or choose a method that honours it: {}", methods.join(", ")))]
+    NotHonoured {
+        /// The method.
+        method: &'static str,
+        /// The component.
+        component: String,
+        /// Methods that honour it.
+        methods: Vec<&'static str>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("has no meaning under `{method}`")]
+        at: SourceSpan,
+    },
+
+    /// A film of too few particles.
+    #[error("the film would have {particles} particles; fewer than {least} are no film")]
+    #[diagnostic(
+        code(F0050),
+        help("particles are {} apart; write a spacing of {} or less, or more particles", length(*spacing), length(rounded_down(*enough)))
+    )]
+    TooCoarse {
+        /// Particles it would have.
+        particles: u64,
+        /// Least number that makes sense.
+        least: u64,
+        /// Distance between particles, metres.
+        spacing: f64,
+        /// Largest distance that gives enough, metres.
+        enough: f64,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The shape.
+        #[label("{particles} particles on this")]
+        at: SourceSpan,
+    },
+
+    /// More particles than memory.
+    #[error(
+        "the scene needs about {} for {} Eulerian and {} Lagrangian particles; {} is available",
+        memory(*bytes),
+        count(*eulerian),
+        count(*lagrangian),
+        memory(*available)
+    )]
+    #[diagnostic(code(F0051), help("write a larger spacing or fewer particles: about {} Eulerian particles fit", count(*fitting)))]
+    TooLarge {
+        /// Eulerian particles.
+        eulerian: u64,
+        /// Lagrangian particles.
+        lagrangian: u64,
+        /// Memory they need, bytes.
+        bytes: u64,
+        /// Memory there is, bytes.
+        available: u64,
+        /// Eulerian particles that would fit.
+        fitting: u64,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The resolution.
+        #[label("too fine")]
+        at: SourceSpan,
+    },
+}
+
+/// A place in a scene file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Name of the file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl SceneError {
+    /// Stable code, such as `F0020`.
+    #[must_use]
+    pub fn stable_code(&self) -> String {
+        self.code().map(|code| code.to_string()).unwrap_or_default()
+    }
+
+    /// Where the fault is; `None` where it is the file as a whole.
+    #[must_use]
+    pub fn place(&self) -> Option<Place> {
+        let at = self.labels()?.next()?;
+        let contents = self.source_code()?.read_span(at.inner(), 0, 0).ok()?;
+        Some(Place {
+            file: contents.name().unwrap_or_default().to_owned(),
+            line: contents.line() + 1,
+            column: contents.column() + 1,
+        })
+    }
+}
+
+fn missing_help(nearest: Option<&str>) -> String {
+    match nearest {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => "write the path of a scene file; `froth scenes` lists those built in".to_owned(),
+    }
+}
+
+fn names_help(nearest: Option<&str>, kind: &str, known: &[String]) -> String {
+    let mut help = String::new();
+    if let Some(nearest) = nearest {
+        let _ = write!(help, "did you mean `{nearest}`? ");
+    }
+    let _ = match known {
+        [] => write!(help, "there are no {kind} here"),
+        known => write!(help, "{kind}: {}", known.join(", ")),
+    };
+    help
+}
+
+/// `field: `, or nothing where there is no field.
+fn prefix(field: &str) -> String {
+    if field.is_empty() { String::new() } else { format!("`{field}`: ") }
+}
+
+fn one_of(names: &[&str]) -> String {
+    match names {
+        [only] => format!("`{only}`"),
+        names => format!("one of {}", names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// Bytes as a person says them.
+fn memory(bytes: u64) -> String {
+    const UNITS: [(&str, f64); 6] = [("EB", 1e18), ("PB", 1e15), ("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)];
+    let bytes = bytes as f64;
+    let (unit, size) = UNITS.into_iter().find(|(_, size)| bytes >= *size).unwrap_or(("bytes", 1.0));
+    format!("{:.1} {unit}", bytes / size)
+}
+
+/// A number of particles as a person says it.
+fn count(number: u64) -> String {
+    if number < 10_000_000 { number.to_string() } else { format!("{:.1e}", number as f64) }
+}
+
+/// Metres as a scene file would have them.
+fn length(metres: f64) -> String {
+    const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)];
+    let (unit, size) = UNITS.into_iter().find(|(_, size)| metres >= 0.999 * size).unwrap_or(("nm", 1e-9));
+    // Three digits are enough, without the zeros that would fill them.
+    let digits = format!("{:.2}", metres / size);
+    format!("{} {unit}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// The next lower number of two digits, so that a limit that is printed still holds.
+fn rounded_down(value: f64) -> f64 {
+    let digit = 10_f64.powf(value.log10().floor() - 1.0);
+    (value / digit).floor() * digit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_are_said_as_people_do() {
+        assert_eq!(length(0.05), "5 cm");
+        assert_eq!(length(rounded_down(0.045_76)), "4.5 cm");
+        assert_eq!(length(1.5e-6), "1.5 um");
+        assert_eq!(memory(860_000_000), "860.0 MB");
+        assert_eq!(count(4000), "4000");
+        assert_eq!(count(1_000_000_000_000), "1.0e12");
+    }
+}

@@ -1,0 +1,62 @@
+//! From a path to text: the file is untrusted, so its length is bounded and each way to be no text has its own error.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use froth_components::quantity::nearest;
+
+use super::error::SceneError;
+
+/// Longest scene file, bytes.
+pub const LONGEST_FILE: u64 = 16 << 20;
+
+/// Most names of a folder that are searched for one like a missing file.
+const MOST_NEIGHBOURS: usize = 10_000;
+
+/// The bytes of a scene file.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let unreadable = |cause: io::Error| match cause.kind() {
+        io::ErrorKind::NotFound => SceneError::Missing { path: path.to_owned(), nearest: nearest_file(path) },
+        _ => SceneError::Unreadable { path: path.to_owned(), cause },
+    };
+    let about = fs::metadata(path).map_err(unreadable)?;
+    if about.is_dir() {
+        return Err(SceneError::Directory { path: path.to_owned() });
+    }
+    // A pipe or a device may never end, or never begin.
+    if !about.is_file() {
+        let cause = io::Error::new(io::ErrorKind::InvalidInput, "it is a pipe, a device or the like");
+        return Err(SceneError::Unreadable { path: path.to_owned(), cause });
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    // The length read may differ from the length announced: the file may grow.
+    let length = about.len().max(bytes.len() as u64);
+    if length > LONGEST_FILE {
+        return Err(SceneError::TooLong { name: path.display().to_string(), bytes: length, limit: LONGEST_FILE });
+    }
+    Ok(bytes)
+}
+
+/// The text of a scene file. A byte order mark is dropped; a zero byte means a binary file.
+pub(super) fn text(name: &str, bytes: &[u8]) -> Result<String, SceneError> {
+    let not_text = |offset| SceneError::NotText { name: name.to_owned(), offset };
+    if let Some(zero) = bytes.iter().position(|byte| *byte == 0) {
+        return Err(not_text(zero));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| not_text(error.valid_up_to()))?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned())
+}
+
+/// A file in the same folder whose name is nearly that of a missing one.
+fn nearest_file(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = fs::read_dir(folder).ok()?.take(MOST_NEIGHBOURS).flatten();
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort_unstable();
+    let near = nearest(name, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(near).display().to_string())
+}

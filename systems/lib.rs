@@ -9,6 +9,7 @@
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
 pub mod clock;
+pub mod forces;
 pub mod melp;
 pub mod neighbours;
 pub mod observe;

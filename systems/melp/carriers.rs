@@ -55,7 +55,8 @@ pub fn advance_carriers(
     refit(&stencil.0, spacing, positions, normals, shapes.bypass_change_detection());
 }
 
-fn refit(stencil: &Stencil, spacing: f64, positions: &[Position], normals: &mut [Normal], shapes: &mut [ShapeOperator]) {
+/// Refits every normal and shape operator from the carriers' places.
+pub fn refit(stencil: &Stencil, spacing: f64, positions: &[Position], normals: &mut [Normal], shapes: &mut [ShapeOperator]) {
     refit_all(positions, &stencil.lists, FIT_SUPPORT * spacing, normals, shapes);
 }
 

@@ -14,6 +14,7 @@
 //! Carriers are Eulerian particles (E), material particles Lagrangian ones (L).
 
 pub mod carriers;
+pub mod discretise;
 pub mod gather;
 pub mod inertia;
 pub mod links;

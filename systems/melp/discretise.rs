@@ -64,6 +64,8 @@ pub struct DiscreteFilm {
     pub speeds: Vec<f64>,
     /// Carriers: concentration, mol/m^2.
     pub concentration: Vec<f64>,
+    /// Carriers: thickness, m. A film without material particles keeps it.
+    pub carrier_thickness: Vec<f64>,
     /// Boundary particles.
     pub wall: Vec<Position>,
     /// Material: places.
@@ -113,7 +115,10 @@ impl DiscreteFilm {
         film.place_carriers(&surface.points(count, true), region, sampling.spacing)?;
         let stencil = film.stencil(region, sampling.spacing);
         film.measure(&stencil);
-        film.set_carrier_motion(authored);
+        film.set_carrier_fields(authored, sampling);
+        if sampling.liquid_per_carrier == 0 {
+            return Ok(film);
+        }
         let liquid = surface.points(count * sampling.liquid_per_carrier, false);
         film.place_liquid(&liquid, authored, region, sampling, &stencil);
         Ok(film)
@@ -167,7 +172,13 @@ impl DiscreteFilm {
         self.volume = enclosed_volume(&self.positions, &self.normals, &stencil.areas, 0..stencil.len());
     }
 
-    fn set_carrier_motion(&mut self, authored: &AuthoredFilm) {
+    fn set_carrier_fields(&mut self, authored: &AuthoredFilm, sampling: Sampling) {
+        let places: Vec<DVec3> = self.positions.iter().map(|p| p.0).collect();
+        let extent =
+            Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
+        self.carrier_thickness = extent.thickness(&authored.film.thickness);
+        self.concentration = extent.concentration(&authored.film, &self.carrier_thickness);
+        self.concentration.iter_mut().for_each(|gamma| *gamma *= sampling.reference_surfactant);
         let drift = authored.drift.map_or(DVec3::ZERO, |drift| drift.0.si());
         self.speeds = self.normals.iter().map(|n| n.0.dot(drift)).collect();
     }

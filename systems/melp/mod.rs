@@ -22,6 +22,7 @@ pub mod marangoni;
 pub mod material;
 pub mod measure;
 pub mod normal_motion;
+pub mod observe;
 pub mod redistribution;
 pub mod scatter;
 pub mod settings;

@@ -1,0 +1,183 @@
+//! A perspective camera.
+//!
+//! ```text
+//!            up                         x ->
+//!             |   right             y  +-------------+
+//!             |  /                  |  |   picture   |   pixel (0, 0) at the top left,
+//!   position  | /                   v  |             |   its centre at (0.5, 0.5)
+//!        <----+ - - - - target         +-------------+
+//!       back
+//! ```
+//! A point at `(X, Y, Z)` along right, up and view is drawn at `x = w/2 + f X/Z`, `y = h/2 - f Y/Z`,
+//! with `f = (h/2) / tan(field of view / 2)` in pixels.
+
+use super::error::PictureError;
+use glam::{DVec3, Vec3};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use serde::Deserialize;
+
+/// Default vertical field of view, degrees.
+pub const FIELD_OF_VIEW: f64 = 35.0;
+/// How far above the horizon the default camera stands, degrees.
+const ELEVATION: f64 = 12.0;
+/// Room around a framed sphere, relative to its radius.
+const MARGIN: f64 = 1.12;
+
+/// Where the picture is taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Place of the eye, metres.
+    pub position: DVec3,
+    /// Point at the centre of the picture, metres.
+    pub target: DVec3,
+    /// Direction that is up in the picture; any length.
+    #[serde(default = "default_up")]
+    pub up: DVec3,
+    /// Angle between the upper and the lower edge of the picture, degrees, 1 to 170.
+    #[serde(default = "default_field_of_view")]
+    pub field_of_view: f64,
+}
+
+fn default_up() -> DVec3 {
+    DVec3::Y
+}
+
+fn default_field_of_view() -> f64 {
+    FIELD_OF_VIEW
+}
+
+impl Camera {
+    /// Looks at a sphere from slightly above, so that it fills the picture.
+    ///
+    /// `centre` and `radius` in metres; `aspect` is width over height.
+    #[must_use]
+    pub fn framing(centre: DVec3, radius: f64, aspect: f64) -> Self {
+        let half_height = 0.5 * FIELD_OF_VIEW.to_radians();
+        let half_angle = (half_height.tan() * aspect.min(1.0)).atan();
+        let distance = radius.max(f64::MIN_POSITIVE) * MARGIN / half_angle.sin();
+        let (sin, cos) = ELEVATION.to_radians().sin_cos();
+        let position = centre + distance * DVec3::new(0.0, sin, cos);
+        Self { position, target: centre, up: DVec3::Y, field_of_view: FIELD_OF_VIEW }
+    }
+
+    /// Frames a set of points, metres: their bounding box fits. For an animation, frame once and keep the camera.
+    ///
+    /// # Errors
+    /// [`PictureError::NoPoints`] for an empty set.
+    pub fn framing_points(points: &[DVec3], aspect: f64) -> Result<Self, PictureError> {
+        let first = *points.first().ok_or(PictureError::NoPoints)?;
+        let low = points.par_iter().copied().reduce(|| first, DVec3::min);
+        let high = points.par_iter().copied().reduce(|| first, DVec3::max);
+        let centre = 0.5 * (low + high);
+        let radius = points.par_iter().map(|p| p.distance(centre)).reduce(|| 0.0, f64::max);
+        let smallest = 1e-9 * centre.length().max(1e-3);
+        Ok(Self::framing(centre, radius.max(smallest), aspect))
+    }
+
+    /// The camera's axes and scale for a picture of `width` by `height` pixels.
+    ///
+    /// # Errors
+    /// [`PictureError`] if the camera has no direction or its angle is out of range.
+    pub fn view(&self, width: f64, height: f64) -> Result<View, PictureError> {
+        if !(1.0..=170.0).contains(&self.field_of_view) {
+            let (name, allowed) = ("the camera's field of view", "1 to 170 degrees");
+            return Err(PictureError::OutOfRange { name, value: self.field_of_view, allowed });
+        }
+        let missing = || PictureError::CameraWithoutDirection;
+        let back = (self.position - self.target).try_normalize().ok_or_else(missing)?;
+        let right = self.up.normalize_or_zero().cross(back);
+        if !self.position.is_finite() || right.length_squared().partial_cmp(&1e-12).is_none_or(|o| o.is_le()) {
+            return Err(missing());
+        }
+        let right = right.normalize();
+        let focal = 0.5 * height / (0.5 * self.field_of_view.to_radians()).tan();
+        Ok(View { position: self.position, right, up: back.cross(right), back, focal, width, height })
+    }
+}
+
+/// A camera's axes, with the scale of one picture.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Place of the eye, metres.
+    pub position: DVec3,
+    /// Unit vector to the right of the picture.
+    pub right: DVec3,
+    /// Unit vector to the top of the picture.
+    pub up: DVec3,
+    /// Unit vector from the target to the eye.
+    pub back: DVec3,
+    /// Focal length, pixels.
+    pub focal: f64,
+    /// Width of the picture, pixels.
+    pub width: f64,
+    /// Height of the picture, pixels.
+    pub height: f64,
+}
+
+impl View {
+    /// A direction in camera axes: right, up, back.
+    #[must_use]
+    pub fn turn(&self, direction: DVec3) -> DVec3 {
+        DVec3::new(direction.dot(self.right), direction.dot(self.up), direction.dot(self.back))
+    }
+
+    /// A point in camera axes, metres; points in view have a negative third part.
+    #[must_use]
+    pub fn place(&self, point: DVec3) -> DVec3 {
+        self.turn(point - self.position)
+    }
+
+    /// Pixel coordinates of a point in camera axes.
+    #[must_use]
+    pub fn project(&self, placed: DVec3) -> (f64, f64) {
+        let scale = self.focal / -placed.z;
+        (0.5 * self.width + scale * placed.x, 0.5 * self.height - scale * placed.y)
+    }
+
+    /// Unit direction, in camera axes, from the eye through a pixel position.
+    #[must_use]
+    pub fn ray(&self, x: f32, y: f32) -> Vec3 {
+        let focal = self.focal as f32;
+        let (x, y) = (x - 0.5 * self.width as f32, y - 0.5 * self.height as f32);
+        Vec3::new(x / focal, -y / focal, -1.0).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Camera;
+    use crate::picture::error::PictureError;
+    use glam::DVec3;
+
+    #[test]
+    fn a_framed_sphere_touches_neither_edge_nor_leaves_half_the_picture_empty() {
+        for (width, height) in [(640.0, 640.0), (320.0, 640.0), (1280.0, 640.0)] {
+            let centre = DVec3::new(0.3, -2.0, 5.0);
+            let view = Camera::framing(centre, 0.05, width / height).view(width, height).unwrap();
+            for step in 0..360 {
+                let (sin, cos) = f64::from(step).to_radians().sin_cos();
+                let (x, y) = view.project(view.place(centre + 0.05 * (cos * view.right + sin * view.up)));
+                assert!(x > 0.0 && x < width && y > 0.0 && y < height);
+            }
+            let (x, _) = view.project(view.place(centre + 0.05 * view.right));
+            assert!(x - 0.5 * width > 0.35 * f64::min(width, height));
+        }
+    }
+
+    #[test]
+    fn a_ray_through_a_projected_point_meets_the_point() {
+        let camera =
+            Camera { position: DVec3::new(1.0, 2.0, 3.0), target: DVec3::ZERO, up: DVec3::Y, field_of_view: 50.0 };
+        let view = camera.view(800.0, 600.0).unwrap();
+        let placed = view.place(DVec3::new(0.2, -0.4, 0.3));
+        let (x, y) = view.project(placed);
+        assert!((view.ray(x as f32, y as f32).as_dvec3() - placed.normalize()).length() < 1e-5);
+    }
+
+    #[test]
+    fn a_camera_without_direction_is_refused() {
+        let camera = Camera { position: DVec3::Y, target: DVec3::ZERO, up: DVec3::Y, field_of_view: 35.0 };
+        assert!(matches!(camera.view(10.0, 10.0), Err(PictureError::CameraWithoutDirection)));
+    }
+}

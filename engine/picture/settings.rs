@@ -1,0 +1,162 @@
+//! What a picture shows, and how: everything an author may choose, with defaults that look good.
+
+use super::camera::Camera;
+use super::colour_map::ColourMap;
+use super::error::PictureError;
+use super::optics::SOAP_SOLUTION_INDEX;
+use super::studio::Background;
+use serde::Deserialize;
+
+/// Largest edge of a picture, pixels.
+const LARGEST_EDGE: u32 = 16_384;
+
+/// Choices for a picture.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PictureSettings {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Point of view; without one the first film is framed from slightly above.
+    pub camera: Option<Camera>,
+    /// What is seen behind the film.
+    pub background: Background,
+    /// Factor on all light that the film mirrors, dimensionless. Doubling it is one stop.
+    pub exposure: f64,
+    /// Samples along each edge of a pixel, 1 to 4. Edges are smooth with 1; more smooth very steep interference bands.
+    pub samples: u32,
+    /// Soap film, or a colour map of any quantity.
+    pub look: Look,
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        Self {
+            width: 640,
+            height: 640,
+            camera: None,
+            background: Background::default(),
+            exposure: 1.0,
+            samples: 1,
+            look: Look::default(),
+        }
+    }
+}
+
+/// How the film's values are shown.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Look {
+    /// A soap film in a studio; values are thickness, metres.
+    Interference {
+        /// Refractive index of the liquid, dimensionless, 1 to 4.
+        #[serde(default = "soap_solution_index")]
+        refractive_index: f64,
+    },
+    /// An opaque colour map with a scale bar.
+    Map {
+        /// Which colours.
+        #[serde(default)]
+        colours: ColourMap,
+        /// Name of the quantity, for the scale bar.
+        quantity: String,
+        /// Unit shown on the scale bar.
+        #[serde(default)]
+        unit: String,
+        /// Size of one shown unit, in the unit of the values: 1e-9 shows metres as nm.
+        #[serde(default = "one")]
+        unit_size: f64,
+        /// Values at the ends of the map, in the unit of the values; without them, the extremes of the film.
+        #[serde(default)]
+        range: Option<(f64, f64)>,
+        /// How much surfaces seen at an angle are darkened to show the shape, 0 (flat colours) to 1.
+        #[serde(default = "gentle_relief")]
+        relief: f64,
+    },
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self::Interference { refractive_index: SOAP_SOLUTION_INDEX }
+    }
+}
+
+fn soap_solution_index() -> f64 {
+    SOAP_SOLUTION_INDEX
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn gentle_relief() -> f64 {
+    0.25
+}
+
+impl PictureSettings {
+    /// Refuses sizes and factors that make no picture.
+    ///
+    /// # Errors
+    /// [`PictureError::OutOfRange`] that names the setting.
+    pub fn check(&self) -> Result<(), PictureError> {
+        let edge = 1.0..=f64::from(LARGEST_EDGE);
+        within("the picture's width", f64::from(self.width), &edge, "1 to 16384 pixels")?;
+        within("the picture's height", f64::from(self.height), &edge, "1 to 16384 pixels")?;
+        within("the number of samples", f64::from(self.samples), &(1.0..=4.0), "1 to 4 per pixel edge")?;
+        within("the exposure", self.exposure, &(1e-6..=1e6), "a factor from 1e-6 to 1e6")?;
+        match &self.look {
+            Look::Interference { refractive_index } => {
+                within("the refractive index", *refractive_index, &(1.0..=4.0), "1 to 4")
+            }
+            Look::Map { unit_size, range, relief, .. } => {
+                within("the size of the unit", *unit_size, &(f64::MIN_POSITIVE..=f64::MAX), "positive")?;
+                within("the relief", *relief, &(0.0..=1.0), "0 to 1")?;
+                range.map_or(Ok(()), |(low, high)| {
+                    let span = high - low;
+                    within("the span of the map's range", span, &(f64::MIN_POSITIVE..=f64::MAX), "positive and finite")
+                })
+            }
+        }
+    }
+}
+
+fn within(
+    name: &'static str,
+    value: f64,
+    range: &std::ops::RangeInclusive<f64>,
+    allowed: &'static str,
+) -> Result<(), PictureError> {
+    if range.contains(&value) { Ok(()) } else { Err(PictureError::OutOfRange { name, value, allowed }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Look, PictureSettings};
+
+    #[test]
+    fn an_empty_block_means_the_defaults() {
+        assert_eq!(ron::from_str::<PictureSettings>("()").unwrap(), PictureSettings::default());
+    }
+
+    #[test]
+    fn a_misspelt_setting_is_refused() {
+        assert!(ron::from_str::<PictureSettings>("(widht: 3)").is_err());
+    }
+
+    #[test]
+    fn a_map_needs_only_a_quantity() {
+        let settings: PictureSettings = ron::from_str("(look: Map(quantity: \"thickness\"))").unwrap();
+        assert!(matches!(settings.look, Look::Map { unit_size: 1.0, range: None, .. }));
+        assert!(settings.check().is_ok());
+    }
+
+    #[test]
+    fn numbers_that_make_no_picture_are_refused() {
+        for settings in
+            ["(width: 0)", "(samples: 9)", "(exposure: -1.0)", "(look: Interference(refractive_index: 0.5))"]
+        {
+            assert!(ron::from_str::<PictureSettings>(settings).unwrap().check().is_err(), "{settings}");
+        }
+    }
+}

@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub mod errors;
 pub mod method;
 pub mod picture;
+pub mod run;
 pub mod scene;
 pub mod simulation;
 pub mod whole_file;

@@ -121,6 +121,17 @@ pub enum CheckpointError {
     },
 }
 
+impl CheckpointError {
+    /// Whether the file itself is broken, so that an older checkpoint may do.
+    #[must_use]
+    pub fn is_damage(&self) -> bool {
+        matches!(
+            self,
+            Self::Unreadable { .. } | Self::NotACheckpoint { .. } | Self::Truncated { .. } | Self::Damaged { .. }
+        )
+    }
+}
+
 fn difference(missing: &[String], unknown: &[String]) -> String {
     let list = |what: &str, names: &[String]| match names {
         [] => None,

@@ -1,5 +1,7 @@
 //! Who a particle is and where it belongs.
 
+use serde::{Deserialize, Serialize};
+
 use crate::column::Plain;
 
 columns! {
@@ -11,7 +13,7 @@ columns! {
 }
 
 /// Number of a region: 0 is the outside, 1 the first authored film's inside (or, for an open film, the film itself).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u32);
 
 impl Plain for RegionId {

@@ -1,14 +1,15 @@
 //! The films of a run: which rows each occupies, whether it is closed, where its rim is.
 //!
-//! Made by a method's `discretise` from authored entities; constant over the run.
+//! Made by a method's `discretise` from authored entities and saved in checkpoints; constant over the run.
 
 use crate::identity::RegionId;
 use bevy_ecs::resource::Resource;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// All films, in the order of their region numbers, and the spacing they are sampled with.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Lamellae {
     /// One entry per film.
     pub films: Vec<Lamella>,
@@ -17,7 +18,7 @@ pub struct Lamellae {
 }
 
 /// One film.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lamella {
     /// Its region: the gas inside a bubble, or the film itself where it is open.
     pub region: RegionId,
@@ -34,7 +35,7 @@ pub struct Lamella {
 }
 
 /// The frame on which an open film is stretched: liquid may slide along it but not leave.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Rim {
     /// A circle around a flat film.
     Circle {

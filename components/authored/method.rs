@@ -21,6 +21,15 @@ impl MethodChoice {
             Self::Melp(_) => MethodName::Melp,
         }
     }
+
+    /// A method with all defaults; `None` if it is not available.
+    #[must_use]
+    pub fn with_defaults(name: MethodName) -> Option<Self> {
+        match name {
+            MethodName::Melp => Some(Self::Melp(MelpSettings::default())),
+            _ => None,
+        }
+    }
 }
 
 /// A published method. All are known by name; not all are available.

@@ -22,4 +22,16 @@ impl Resolution {
             Self::Particles(count) => (area / count.get() as f64).sqrt(),
         }
     }
+
+    /// The resolution `factor` times as fine: the spacing divided by it, the number of carriers multiplied by its square.
+    #[must_use]
+    pub fn refined(&self, factor: f64) -> Self {
+        match self {
+            Self::Spacing(spacing) => Self::Spacing(Length::from_si(spacing.si() / factor)),
+            Self::Particles(count) => {
+                let refined = count.get() as f64 * factor * factor;
+                Self::Particles(Count::new((refined.round() as u64).max(1)))
+            }
+        }
+    }
 }

@@ -4,10 +4,9 @@ use bevy_ecs::world::World;
 use froth_components::authored::PlaceInScene;
 use froth_components::authored::field::{AirDrag, Gravity, HeatSource, Hover, Sweep, Wind};
 use froth_components::authored::film::Film;
-use froth_components::authored::method::{AirInertia, Gas, MelpSettings};
+use froth_components::authored::method::{AirInertia, Gas, MelpSettings, MethodChoice};
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::perturbation::{Bumps, HarmonicMode};
-use froth_components::authored::resolution::Resolution;
 use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Rectangle, Shape, Sphere};
 use froth_components::clock::Seed;
 use froth_components::column::Column;
@@ -28,22 +27,33 @@ use froth_systems::melp::settings::Melp;
 use froth_systems::melp::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use froth_systems::melp::{carriers, gather, inertia, links, marangoni, material, measure, normal_motion, observe};
 use froth_systems::melp::{scatter, sorting, step_length};
-use froth_systems::operators::conjugate_gradient::NotConverged;
 use froth_systems::plan::{Requires, SchedulePlan};
 use froth_systems::rows::registry::ColumnRegistry;
+use froth_systems::rows::state::StateRegistry;
 use froth_systems::rows::{fill_column, spawn_rows};
 use froth_systems::sampling::random::{self, Use};
 use froth_systems::sampling::surface::Perturbation;
 use froth_systems::stage::Stage;
-use froth_systems::{clock, forces};
+use froth_systems::forces;
 
-/// Adds one step of MELP to a plan.
+use super::{DiscretiseError, Method};
+use crate::scene::SceneHeader;
+
+/// Moving Eulerian-Lagrangian particles.
+pub const METHOD: Method = Method {
+    name: "melp",
+    summary: "moving Eulerian-Lagrangian particles (Deng et al. 2022)",
+    register,
+    discretise,
+    assemble,
+};
+
+/// Adds one step of MELP to a plan. The step length itself is chosen after the stage's limits, for every method alike.
 pub fn assemble(plan: &mut SchedulePlan) {
     let always = Requires::nothing;
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
-    plan.add(Stage::Clock, "choose the step length", clock::choose_step_length, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "link the particle sets", links::link_material, liquid());
     plan.add(Stage::Gather, "gather liquid (L2E)", gather::gather_liquid, liquid());
@@ -75,7 +85,7 @@ fn is_elastic(world: &World) -> bool {
     world.get_resource::<Liquid>().is_some_and(|liquid| liquid.elasticity > 0.0)
 }
 
-/// Registers the columns that MELP's particles carry.
+/// Registers the columns that MELP's particles carry and the state of the films, and inserts the settings.
 pub fn register(world: &mut World) {
     fn both<C: Column + Default>(world: &mut World) {
         ColumnRegistry::register::<EulerianParticle, C>(world);
@@ -107,6 +117,9 @@ pub fn register(world: &mut World) {
     ColumnRegistry::register::<Region, ReferenceVolume>(world);
     ColumnRegistry::register::<Region, ReferencePressure>(world);
     ColumnRegistry::register::<Region, GasExponent>(world);
+    StateRegistry::register::<Lamellae>(world, "lamellae");
+    let (settings, maximum_step) = (settings(world), world.resource::<SceneHeader>().maximum_step);
+    world.insert_resource(Melp::new(&settings, maximum_step.map(|step| step.si())));
     world.init_resource::<FilmStencil>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();
@@ -118,16 +131,20 @@ fn carrier<C: Column + Default>(world: &mut World) {
     ColumnRegistry::register::<EulerianParticle, C>(world);
 }
 
+/// The scene's settings of MELP; the defaults where the scene is written for another method.
+fn settings(world: &World) -> MelpSettings {
+    match world.resource::<SceneHeader>().method {
+        MethodChoice::Melp(settings) => settings,
+        _ => MelpSettings::default(),
+    }
+}
+
 /// Turns the authored films of the world into particles.
 ///
 /// # Errors
-/// [`NotConverged`] if the carriers of a film could not be spread evenly.
-pub fn discretise(
-    world: &mut World,
-    settings: &MelpSettings,
-    resolution: Resolution,
-    maximum_step: Option<f64>,
-) -> Result<(), NotConverged> {
+/// [`NotConverged`](froth_systems::operators::conjugate_gradient::NotConverged) if the carriers of a film could not be spread evenly.
+pub fn discretise(world: &mut World) -> Result<(), DiscretiseError> {
+    let (settings, resolution) = (&settings(world), world.resource::<SceneHeader>().resolution);
     let liquid = *world.resource::<Liquid>();
     let atmosphere = *world.resource::<Atmosphere>();
     let authored = authored_films(world);
@@ -142,7 +159,6 @@ pub fn discretise(
         films.push(DiscreteFilm::sample(film, RegionId(region), sampling)?);
     }
     spawn_all(world, &films);
-    world.insert_resource(Melp::new(settings, maximum_step));
     world.insert_resource(lamellae(&films, settings, atmosphere, sampling.spacing));
     fill_gas(world, &films, settings, liquid, atmosphere);
     fill_particles(world, &authored, &films, liquid);

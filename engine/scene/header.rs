@@ -1,12 +1,13 @@
 //! What a scene says besides its entities.
 
+use bevy_ecs::resource::Resource;
 use froth_components::authored::liquid::{Atmosphere, Liquid};
 use froth_components::authored::method::MethodChoice;
 use froth_components::authored::resolution::Resolution;
 use froth_components::quantity::{Rate, Time};
 
-/// What a scene says besides its entities.
-#[derive(Clone, Debug, PartialEq)]
+/// What a scene says besides its entities. A resource of every simulated world.
+#[derive(Resource, Clone, Debug, PartialEq)]
 pub struct SceneHeader {
     /// One line for people.
     pub title: String,

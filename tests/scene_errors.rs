@@ -45,7 +45,7 @@ fn fault_of_bytes(bytes: &[u8]) -> SceneError {
 /// The message as a terminal shows it. Every code has a page.
 fn shown(error: &SceneError) -> String {
     let code = error.stable_code();
-    // assert!(error_page(&code).is_some(), "no page for {code}");
+    assert!(error_page(&code).is_some(), "no page for {code}");
     let mut message = String::new();
     let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor()).with_width(100);
     handler.render_report(&mut message, error).unwrap();

@@ -6,9 +6,9 @@ use std::f64::consts::{PI, TAU};
 
 use bevy_ecs::component::Component;
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
-use crate::quantity::{Direction, Length, Vector, dimension, range};
+use crate::quantity::{Direction, Length, Refusal, RefusalKind, Vector, dimension, range};
 
 /// A place, metres.
 pub type Place = Vector<dimension::Length>;
@@ -21,7 +21,7 @@ pub struct Sphere {
     #[serde(default)]
     pub centre: Place,
     /// Radius, metres.
-    #[serde(deserialize_with = "range::positive")]
+    #[serde(deserialize_with = "range::film_size")]
     pub radius: Length,
 }
 
@@ -36,7 +36,7 @@ pub struct Ellipsoid {
     pub radii: Radii,
 }
 
-/// Three positive lengths, metres.
+/// Three lengths of a film, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Radii(DVec3);
 
@@ -55,8 +55,8 @@ impl Radii {
 }
 
 impl<'de> Deserialize<'de> for Radii {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        range::positive_vector(deserializer).map(|radii: Place| Self(radii.si()))
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        range::film_sizes(deserializer).map(|radii: Place| Self(radii.si()))
     }
 }
 
@@ -68,7 +68,7 @@ pub struct HalfSphere {
     #[serde(default)]
     pub centre: Place,
     /// Radius, metres.
-    #[serde(deserialize_with = "range::positive")]
+    #[serde(deserialize_with = "range::film_size")]
     pub radius: Length,
     /// From the plane to the pole. Default: y.
     #[serde(default = "along_y")]
@@ -83,7 +83,7 @@ pub struct Disc {
     #[serde(default)]
     pub centre: Place,
     /// Radius, metres.
-    #[serde(deserialize_with = "range::positive")]
+    #[serde(deserialize_with = "range::film_size")]
     pub radius: Length,
     /// Normal of the plane. Default: z.
     #[serde(default = "along_z")]
@@ -91,24 +91,62 @@ pub struct Disc {
 }
 
 /// A flat rectangle whose rim is pinned.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
     /// Centre, metres. Default: the origin.
-    #[serde(default)]
     pub centre: Place,
     /// Extent across `up`, metres.
-    #[serde(deserialize_with = "range::positive")]
     pub width: Length,
     /// Extent along `up`, metres.
-    #[serde(deserialize_with = "range::positive")]
     pub height: Length,
     /// Normal of the plane. Default: z.
-    #[serde(default = "along_z")]
     pub normal: Direction,
-    /// Direction of the height; its part along the normal is dropped. Default: y.
-    #[serde(default = "along_y")]
+    /// Direction of the height, at right angles to the normal: what is written, less its part along the normal.
+    /// Default: y, or -z where the normal is along y.
     pub up: Direction,
+}
+
+impl Rectangle {
+    /// Direction of the width, `up × normal`.
+    #[must_use]
+    pub fn across(&self) -> DVec3 {
+        self.up.unit().cross(self.normal.unit())
+    }
+}
+
+impl<'de> Deserialize<'de> for Rectangle {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename = "Rectangle", deny_unknown_fields)]
+        struct Fields {
+            #[serde(default)]
+            centre: Place,
+            #[serde(deserialize_with = "range::film_size")]
+            width: Length,
+            #[serde(deserialize_with = "range::film_size")]
+            height: Length,
+            #[serde(default = "along_z")]
+            normal: Direction,
+            #[serde(default)]
+            up: Option<Direction>,
+        }
+        let Fields { centre, width, height, normal, up } = Fields::deserialize(deserializer)?;
+        let up = match up {
+            Some(up) => within_plane(up, normal).ok_or_else(|| {
+                let help = "write an up that lies more or less in the plane of the rectangle";
+                Refusal::new(RefusalKind::Contradiction, "`up` points along the normal", help).into_serde()
+            })?,
+            None => within_plane(Direction::Y, normal).unwrap_or(Direction::MINUS_Z),
+        };
+        Ok(Self { centre, width, height, normal, up })
+    }
+}
+
+/// The part of a direction at right angles to a normal; `None` if hardly any is left.
+fn within_plane(direction: Direction, normal: Direction) -> Option<Direction> {
+    const HARDLY_ANY: f64 = 1e-6;
+    let part = direction.unit().reject_from_normalized(normal.unit());
+    Direction::of(part).filter(|_| part.length() > HARDLY_ANY)
 }
 
 fn along_y() -> Direction {
@@ -229,5 +267,17 @@ mod tests {
     fn a_negative_half_axis_is_refused() {
         assert!(ron::from_str::<Ellipsoid>("(radii: (1, 1, 2))").is_ok());
         assert!(ron::from_str::<Ellipsoid>("(radii: (1, -1, 2))").is_err());
+    }
+
+    #[test]
+    fn the_height_of_a_rectangle_lies_in_its_plane() {
+        let read = |text: &str| ron::from_str::<Rectangle>(text);
+        let upright = read("(width: 1, height: 2)").unwrap();
+        assert_eq!((upright.across(), upright.up.unit()), (DVec3::X, DVec3::Y));
+        let level = read("(width: 1, height: 2, normal: (0, 1, 0))").unwrap();
+        assert_eq!((level.across(), level.up.unit()), (DVec3::X, DVec3::NEG_Z));
+        let tilted = read("(width: 1, height: 2, normal: (0, 1, 1))").unwrap();
+        assert!(tilted.up.unit().dot(tilted.normal.unit()).abs() < 1e-15);
+        assert!(read("(width: 1, height: 2, normal: (0, 1, 0), up: (0, -3, 0))").is_err());
     }
 }

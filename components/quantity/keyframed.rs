@@ -133,9 +133,9 @@ impl<T: KeyframeValue> KeyframedVisitor<T> {
         Ok(Keyframed::constant(value))
     }
 
-    fn scalar<E: serde::de::Error>(&self, value: Part<T>) -> Result<Keyframed<T>, E> {
+    fn scalar<E: serde::de::Error>(&self, value: &Part<T>) -> Result<Keyframed<T>, E> {
         let Part::Number(number) = value else { unreachable!("invariant: a number or a text is no keyframe") };
-        T::from_parts(&[number])
+        T::from_parts(&[*number])
             .map(Keyframed::constant)
             .ok_or_else(|| E::invalid_type(Unexpected::Other("a single value"), self))
     }
@@ -150,7 +150,7 @@ impl<'de, T: KeyframeValue> Visitor<'de> for KeyframedVisitor<T> {
     }
 
     fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
-        self.scalar(PartVisitor(PhantomData).visit_f64(value)?)
+        self.scalar(&PartVisitor(PhantomData).visit_f64(value)?)
     }
 
     fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
@@ -162,7 +162,7 @@ impl<'de, T: KeyframeValue> Visitor<'de> for KeyframedVisitor<T> {
     }
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
-        self.scalar(PartVisitor(PhantomData).visit_str(text)?)
+        self.scalar(&PartVisitor(PhantomData).visit_str(text)?)
     }
 
     /// A vector and a list of keyframes both arrive here: the first element tells which.

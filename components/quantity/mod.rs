@@ -3,7 +3,7 @@
 //! A scene field of type [`Length`] takes a bare number (metres) or text with a unit (`"5 cm"`), and refuses a mass, an unknown
 //! unit, NaN and infinity with a [`Refusal`] that says what to write. The loader turns that into an error with file, line and caret.
 //!
-//! Next: the dimensions ([`dimension`]), how units are read ([`unit`]), vectors ([`Vector`]), values over time ([`Keyframed`]).
+//! Next: the dimensions ([`dimension`]), how units are read ([`mod@unit`]), vectors ([`Vector`]), values over time ([`Keyframed`]).
 
 mod count;
 pub mod dimension;

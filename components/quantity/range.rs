@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use serde::de::{Deserialize, Deserializer};
 
-use super::{Count, Dimension, Length, Quantity, Ratio, Refusal, RefusalKind, SurfaceTension, Vector};
+use super::{Count, Dimension, Length, Quantity, Ratio, Refusal, RefusalKind, SurfaceTension, Vector, dimension};
 
 /// Greater than zero.
 ///
@@ -29,15 +29,28 @@ pub fn not_negative<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) 
     demand(value.si() >= 0.0, value, value, rule)
 }
 
-/// Three parts, each greater than zero.
+/// What a film may measure, metres. Wide enough for all that exists; narrow enough that areas and volumes neither vanish nor overflow.
+const FILM_SIZE: RangeInclusive<f64> = 1e-6..=1e3;
+const FILM_SIZE_RULE: &str = "a film measures 1 um to 1 km, e.g. 0.05 or \"5 cm\"";
+
+/// Radius or side of a film: 1 um to 1 km.
 ///
 /// # Errors
-/// As the vector, or when a part is zero or negative.
-pub fn positive_vector<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) -> Result<Vector<D>, De::Error> {
-    let vector = Vector::<D>::deserialize(deserializer)?;
-    let smallest = Quantity::<D>::from_si(vector.si().min_element());
-    let rule = format!("three values greater than 0 are wanted, each {}, e.g. {}", D::INFO.name, D::INFO.example);
-    demand(smallest.si() > 0.0, vector, smallest, rule)
+/// As the quantity, or when it is outside.
+pub fn film_size<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Length, De::Error> {
+    within(deserializer, FILM_SIZE, FILM_SIZE_RULE)
+}
+
+/// Three of [`film_size`].
+///
+/// # Errors
+/// As the vector, or when one is outside.
+pub fn film_sizes<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Vector<dimension::Length>, De::Error> {
+    let sizes = Vector::deserialize(deserializer)?;
+    match sizes.si().to_array().into_iter().find(|size| !FILM_SIZE.contains(size)) {
+        Some(wrong) => demand(false, sizes, Length::from_si(wrong), FILM_SIZE_RULE.to_owned()),
+        None => Ok(sizes),
+    }
 }
 
 /// From 0 to 1, both included.

@@ -110,6 +110,8 @@ impl Direction {
     pub const Y: Self = Self(DVec3::Y);
     /// Along z.
     pub const Z: Self = Self(DVec3::Z);
+    /// Against z.
+    pub const MINUS_Z: Self = Self(DVec3::NEG_Z);
 
     /// The direction of a vector, or `None` if it has none.
     #[must_use]

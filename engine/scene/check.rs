@@ -60,7 +60,7 @@ impl Scene {
                 component: component.name.to_owned(),
                 methods: honours::methods_that_honour(component.name),
                 file: self.file.clone(),
-                at: component.range.clone().into(),
+                at: self.file.span(component.range.clone()),
             })
         })
     }
@@ -72,7 +72,7 @@ impl Scene {
             self.check_companions(entity)?;
         }
         if self.films().next().is_none() {
-            return Err(SceneError::NoFilm { file: self.file.clone(), at: self.entities_keyword().into() });
+            return Err(SceneError::NoFilm { file: self.file.clone(), at: self.file.span(self.entities_keyword()) });
         }
         Ok(())
     }
@@ -84,8 +84,8 @@ impl Scene {
             first_shape: first.name.to_owned(),
             second_shape: second.name.to_owned(),
             file: self.file.clone(),
-            at: second.range.clone().into(),
-            first: first.range.clone().into(),
+            at: self.file.span(second.range.clone()),
+            first: self.file.span(first.range.clone()),
         })
     }
 
@@ -103,7 +103,7 @@ impl Scene {
                     component: component.name.to_owned(),
                     needs: needs.to_vec(),
                     file: self.file.clone(),
-                    at: component.range.clone().into(),
+                    at: self.file.span(component.range.clone()),
                 });
             }
         }
@@ -121,7 +121,7 @@ impl Scene {
             available,
             fitting: estimate.fitting(available),
             file: self.file.clone(),
-            at: self.resolution.clone().into(),
+            at: self.file.span(self.resolution.clone()),
         })
     }
 
@@ -136,7 +136,7 @@ impl Scene {
                     spacing: estimate.spacing,
                     enough: (shape.area() / LEAST_PARTICLES as f64).sqrt(),
                     file: self.file.clone(),
-                    at: entity.shape_range().into(),
+                    at: self.file.span(entity.shape_range()),
                 });
             }
         }

@@ -113,7 +113,7 @@ pub enum SceneError {
         /// The known name most like it.
         nearest: Option<String>,
         /// All components, in alphabetical order.
-        known: Vec<String>,
+        known: Box<[String]>,
         /// The file.
         #[source_code]
         file: SceneText,
@@ -133,7 +133,7 @@ pub enum SceneError {
         /// The known name most like it.
         nearest: Option<String>,
         /// All fields of the owner.
-        known: Vec<String>,
+        known: Box<[String]>,
         /// The file.
         #[source_code]
         file: SceneText,
@@ -153,7 +153,7 @@ pub enum SceneError {
         /// The known name most like it.
         nearest: Option<String>,
         /// All choices.
-        known: Vec<String>,
+        known: Box<[String]>,
         /// The file.
         #[source_code]
         file: SceneText,
@@ -171,7 +171,7 @@ pub enum SceneError {
         /// The known name most like it.
         nearest: Option<String>,
         /// All available methods.
-        known: Vec<String>,
+        known: Box<[String]>,
         /// The file.
         #[source_code]
         file: SceneText,
@@ -187,7 +187,7 @@ pub enum SceneError {
         /// The name in the file.
         method: String,
         /// All available methods.
-        known: Vec<String>,
+        known: Box<[String]>,
         /// The file.
         #[source_code]
         file: SceneText,

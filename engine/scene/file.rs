@@ -8,8 +8,8 @@ use froth_components::quantity::nearest;
 
 use super::error::SceneError;
 
-/// Longest scene file, bytes.
-pub const LONGEST_FILE: u64 = 16 << 20;
+/// Longest scene file, bytes: room for some ten thousand entities, and read within seconds whatever it holds.
+pub const LONGEST_FILE: u64 = 4 << 20;
 
 /// Most names of a folder that are searched for one like a missing file.
 const MOST_NEIGHBOURS: usize = 10_000;

@@ -104,10 +104,10 @@ fn method(block: &Block) -> Result<MethodChoice, SceneError> {
     let Some(name) = block.name() else {
         return Err(wrong_block(block, "Scene.method", "a method, e.g. Melp(cfl: 0.99)"));
     };
-    let at = block.name_range().into();
+    let at = file.span(block.name_range());
     match MethodName::from_scene(name) {
         None => {
-            let nearest = nearest(name, available()).map(str::to_owned);
+            let nearest = nearest(name, MethodName::ALL.map(MethodName::in_scene)).map(str::to_owned);
             Err(SceneError::UnknownMethod { found: quote(name), nearest, known: known(), file, at })
         }
         Some(method) if !method.is_available() => {
@@ -126,8 +126,8 @@ fn entity(blocks: impl Iterator<Item = Block>, registry: &AuthoredRegistry) -> R
             return Err(SceneError::DuplicateComponent {
                 component: component.name.to_owned(),
                 file: block.file().clone(),
-                at: component.range.into(),
-                first: first.range.clone().into(),
+                at: block.file().span(component.range),
+                first: block.file().span(first.range.clone()),
             });
         }
         components.push(component);
@@ -146,7 +146,7 @@ fn component(block: &Block, registry: &AuthoredRegistry) -> Result<AuthoredCompo
             nearest: nearest(name, names()).map(str::to_owned),
             known: names().map(str::to_owned).collect(),
             file: block.file().clone(),
-            at: block.name_range().into(),
+            at: block.file().span(block.name_range()),
         });
     };
     Ok(AuthoredComponent {
@@ -163,6 +163,6 @@ fn wrong_block(block: &Block, field: &str, expected: &str) -> SceneError {
         message: format!("`{}` is not {}", quote(block.text()), short(expected)),
         help: format!("write {expected}"),
         file: block.file().clone(),
-        at: block.range().into(),
+        at: block.file().span(block.range()),
     }
 }

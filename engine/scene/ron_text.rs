@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use froth_components::quantity::{Refusal, RefusalKind, nearest};
+use miette::SourceSpan;
 use ron::error::{Error as RonError, SpannedError, SpannedResult};
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
@@ -106,7 +107,7 @@ impl Fault<'_> {
             RonError::MissingStructField { field, .. } => self.missing_field(field, cursor),
             RonError::DuplicateStructField { field, .. } => self.duplicate_field(field, cursor),
             RonError::ExceededRecursionLimit => {
-                SceneError::TooDeep { file: self.file.clone(), at: self.in_file(self.token_at(cursor)).into() }
+                SceneError::TooDeep { file: self.file.clone(), at: self.in_file(self.token_at(cursor)) }
             }
             RonError::InvalidValueForType { expected, .. } => self.wrong_type(&expected, self.value_before(cursor)),
             RonError::ExpectedDifferentLength { expected, .. } => {
@@ -125,16 +126,16 @@ impl Fault<'_> {
         let file = self.file.clone();
         let Some(Refusal { kind, message, help }) = Refusal::from_text(&message) else {
             let at = self.innermost(cursor).unwrap_or_else(|| self.value_before(cursor));
-            return SceneError::Refused { field: self.path(cursor), message, file, at: self.in_file(at).into() };
+            return SceneError::Refused { field: self.owner(cursor), message, file, at: self.in_file(at) };
         };
         if kind == RefusalKind::Contradiction {
             let at = self.innermost(cursor).unwrap_or_else(|| self.value_before(cursor));
             let field = self.owner(cursor);
-            return SceneError::Contradiction { field, message, help, file, at: self.in_file(at).into() };
+            return SceneError::Contradiction { field, message, help, file, at: self.in_file(at) };
         }
         let value = self.value_before(cursor);
         let field = self.path(value.start);
-        let at = self.in_file(value).into();
+        let at = self.in_file(value);
         match kind {
             RefusalKind::UnknownUnit => SceneError::UnknownUnit { field, message, help, file, at },
             RefusalKind::WrongDimension => SceneError::WrongDimension { field, message, help, file, at },
@@ -153,7 +154,7 @@ impl Fault<'_> {
             nearest: nearest(found, known.iter().copied()).map(str::to_owned),
             known: owned(known),
             file: self.file.clone(),
-            at: self.in_file(self.value_before(cursor)).into(),
+            at: self.in_file(self.value_before(cursor)),
         }
     }
 
@@ -165,7 +166,7 @@ impl Fault<'_> {
             nearest: nearest(found, known.iter().copied()).map(str::to_owned),
             known: owned(known),
             file: self.file.clone(),
-            at: self.in_file(at).into(),
+            at: self.in_file(at),
         }
     }
 
@@ -174,7 +175,7 @@ impl Fault<'_> {
             owner: self.owner(cursor),
             field: field.to_owned(),
             file: self.file.clone(),
-            at: self.in_file(self.innermost(cursor).unwrap_or(0..self.text.len())).into(),
+            at: self.in_file(self.innermost(cursor).unwrap_or(0..self.text.len())),
         }
     }
 
@@ -183,7 +184,7 @@ impl Fault<'_> {
             owner: self.owner(cursor),
             field: field.to_owned(),
             file: self.file.clone(),
-            at: self.in_file(self.value_before(cursor)).into(),
+            at: self.in_file(self.value_before(cursor)),
         }
     }
 
@@ -193,7 +194,7 @@ impl Fault<'_> {
             message: format!("`{}` is not {}", quote(&self.text[found.clone()]), short(expected)),
             help: format!("write {expected}"),
             file: self.file.clone(),
-            at: self.in_file(found).into(),
+            at: self.in_file(found),
         }
     }
 
@@ -210,20 +211,20 @@ impl Fault<'_> {
             _ => "look for a missing comma, bracket or quote just before this place",
         };
         let problem = lower_first(&code.to_string());
-        let at = self.in_file(over_lines.or(unclosed).unwrap_or_else(|| self.token_at(cursor))).into();
+        let at = self.in_file(over_lines.or(unclosed).unwrap_or_else(|| self.token_at(cursor)));
         SceneError::Syntax { problem, help, file: self.file.clone(), at }
     }
 
     /// Path of the field that the token before `cursor` belongs to.
     fn path(&self, cursor: usize) -> String {
         let path = Surroundings::at(self.text, cursor).path(self.text);
-        if path.is_empty() { self.root.to_owned() } else { path }
+        if path.is_empty() { self.root.to_owned() } else { quote(&path) }
     }
 
     /// What the fields at `cursor` belong to.
     fn owner(&self, cursor: usize) -> String {
         let owner = Surroundings::at(self.text, cursor).owner(self.text);
-        if owner.is_empty() { self.root.to_owned() } else { owner }
+        if owner.is_empty() { self.root.to_owned() } else { quote(&owner) }
     }
 
     fn innermost(&self, cursor: usize) -> Option<Range<usize>> {
@@ -239,9 +240,9 @@ impl Fault<'_> {
     }
 
     /// A range of the read text as a range of the file.
-    fn in_file(&self, range: Range<usize>) -> Range<usize> {
+    fn in_file(&self, range: Range<usize>) -> SourceSpan {
         let place = |offset: usize| (self.range.start + offset).min(self.range.end);
-        place(range.start)..place(range.end)
+        self.file.span(place(range.start)..place(range.end))
     }
 }
 
@@ -275,7 +276,7 @@ pub(super) fn short(expected: &str) -> &str {
     expected.split_once(", e.g.").map_or(expected, |(short, _example)| short)
 }
 
-fn owned(names: &[&str]) -> Vec<String> {
+fn owned(names: &[&str]) -> Box<[String]> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 

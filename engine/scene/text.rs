@@ -11,6 +11,8 @@ use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanConten
 
 /// Longest piece of a file that an error repeats in a sentence, characters.
 const QUOTE_LENGTH: usize = 40;
+/// Longest piece of a file that an error points at, bytes.
+const POINTED_LENGTH: usize = 400;
 /// Longest excerpt of a file that an error shows, bytes; more is one endless line.
 const EXCERPT_LENGTH: usize = 1600;
 /// Bytes shown on either side of the fault in an endless line.
@@ -42,6 +44,12 @@ impl SceneText {
     #[must_use]
     pub fn text(&self) -> &str {
         &self.0.text
+    }
+
+    /// The bytes an error points at, cut where they would fill the screen.
+    pub(super) fn span(&self, range: Range<usize>) -> SourceSpan {
+        let end = range.end.min(self.text().floor_char_boundary(range.start + POINTED_LENGTH));
+        (range.start..end.max(range.start)).into()
     }
 
     /// Line and column of a byte offset, both from 1.

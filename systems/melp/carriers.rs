@@ -106,7 +106,7 @@ pub fn redistribute_carriers(
         surfactant[i].0 = moved_surfactant[i];
         tension[i].0 = moved_tension[i];
     }
-    lift(positions, normals, shapes, &moves.displacement);
+    lift(&stencil.0, lamellae.spacing, positions, normals, shapes, &moves.displacement);
     refit(&stencil.0, lamellae.spacing, positions, normals, shapes);
     stencil.0.cells.rebuild(positions, FIT_SUPPORT * lamellae.spacing);
 }

@@ -157,7 +157,7 @@ impl DiscreteFilm {
                 break;
             }
             let moves = spread.moves(&excess, stop, &mut work)?;
-            lift(&mut self.positions, &self.normals, &self.shapes, &moves.displacement);
+            lift(&stencil, spacing, &mut self.positions, &self.normals, &self.shapes, &moves.displacement);
         }
         let stencil = self.stencil(region, spacing);
         refit(&stencil, spacing, &self.positions, &mut self.normals, &mut self.shapes);

@@ -11,9 +11,11 @@
 //! paper's at walls, 0.3 % so) and from the ratio to the surfactant; no evolution of thickness on L (Eq. 8).
 
 use super::state::{FilmStencil, Transfers};
+use crate::observe::Observables;
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
 use froth_components::film::{Area, LiquidVolume, MeanCurvature, ShapeOperator, SurfaceTension, Surfactant, SurfactantAmount, Thickness};
 use froth_components::gas::{GasExponent, GasPressure, GasVolume, IdealGas, ReferencePressure, ReferenceVolume};
 use froth_components::identity::InRegion;
@@ -124,15 +126,34 @@ pub fn set_plain_tension(mut carriers: Query<&mut SurfaceTension, With<EulerianP
     columns_mut(&mut carriers).bypass_change_detection().fill(SurfaceTension(liquid.surface_tension));
 }
 
+/// Time in which the evolved volume follows the measured one, s.
+const VOLUME_MEMORY: f64 = 0.02;
+
 /// Measures the pressure of the gas in every closed region.
+///
+/// The volume is evolved by the film's flux, since the measured one jitters by 1e-4 (10 Pa at 1 atm) as carriers move
+/// along the film. But redistribution displaces the film by its interpolation error, which the flux does not see, so
+/// the evolved volume follows the measured one slowly; how far it went is recorded.
 pub fn measure_pressure(
+    carriers: Query<(&Position, &Normal), With<EulerianParticle>>,
     mut regions: Query<
-        (&GasVolume, &ReferenceVolume, &ReferencePressure, &GasExponent, &mut GasPressure),
+        (&mut GasVolume, &ReferenceVolume, &ReferencePressure, &GasExponent, &mut GasPressure),
         With<Region>,
     >,
+    stencil: Res<FilmStencil>,
+    lamellae: Res<Lamellae>,
+    clock: Res<Clock>,
+    mut observables: ResMut<Observables>,
 ) {
-    for (volume, reference_volume, reference_pressure, exponent, mut pressure) in &mut regions {
-        if reference_volume.0 > 0.0 {
+    let (positions, normals) = columns(&carriers);
+    for (film, region) in lamellae.films.iter().zip(&mut regions) {
+        let (mut volume, reference_volume, reference_pressure, exponent, mut pressure) = region;
+        if film.rim.is_none() {
+            let measured = enclosed_volume(positions, normals, &stencil.0.areas, film.carriers.clone());
+            let share = -(-clock.step_length / VOLUME_MEMORY).exp_m1();
+            let follow = share * (measured - volume.0);
+            observables.record("volume_followed", "1", follow / volume.0);
+            volume.0 += follow;
             let law = IdealGas {
                 reference_pressure: reference_pressure.0,
                 reference_volume: reference_volume.0,

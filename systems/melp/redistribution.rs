@@ -17,6 +17,7 @@
 
 use crate::neighbours::kernel::Kernel;
 use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
+use crate::operators::quadratic::height_along;
 use crate::operators::stencil::{PAIR_SUPPORT, Stencil};
 use crate::operators::tangent::tangential;
 use crate::rows::reduce::ordered_sum;
@@ -28,6 +29,8 @@ use std::ops::Range;
 
 /// Strength of the Fick displacement, dimensionless.
 const FICK: f64 = 0.05;
+/// Support of the quartics along which carriers slide, in spacings.
+const LIFT_SUPPORT: f64 = PAIR_SUPPORT;
 /// Longest displacement, in spacings.
 const LONGEST_MOVE: f64 = 0.2;
 /// Relative standard deviation of the areas below which carriers stay where they are.
@@ -130,12 +133,28 @@ impl Spread<'_> {
     }
 }
 
-/// Moves every carrier by its displacement, along the film's own quadratic.
-pub fn lift(positions: &mut [Position], normals: &[Normal], shapes: &[ShapeOperator], moves: &[DVec3]) {
-    for (i, d) in moves.iter().enumerate() {
-        let sag = 0.5 * (shapes[i].0 * *d).dot(*d);
-        positions[i].0 += *d - normals[i].0 * sag;
-    }
+/// Moves every carrier by its displacement, along the film's own quartic; where there are too few neighbours for one
+/// (at corners), along its quadratic.
+pub fn lift(
+    stencil: &Stencil,
+    spacing: f64,
+    positions: &mut [Position],
+    normals: &[Normal],
+    shapes: &[ShapeOperator],
+    moves: &[DVec3],
+) {
+    let before: &[Position] = positions;
+    let moved: Vec<Position> = (0..moves.len())
+        .into_par_iter()
+        .with_min_len(128)
+        .map(|i| {
+            let (x, n, d) = (before[i].0, normals[i].0, moves[i]);
+            let offsets = || stencil.lists.of(i).iter().map(|&j| before[j as usize].0 - x);
+            let height = height_along(n, LIFT_SUPPORT * spacing, offsets, d);
+            Position(x + d + n * height.unwrap_or_else(|| -0.5 * (shapes[i].0 * d).dot(d)))
+        })
+        .collect();
+    positions.copy_from_slice(&moved);
 }
 
 /// Relative standard deviation of the areas.
@@ -143,3 +162,7 @@ pub fn lift(positions: &mut [Position], normals: &[Normal], shapes: &[ShapeOpera
 pub fn unevenness(excess: &[f64]) -> f64 {
     (ordered_sum(excess.len(), 0.0, |i| excess[i] * excess[i]) / excess.len().max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+#[path = "redistribution_tests.rs"]
+mod tests;

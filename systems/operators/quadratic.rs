@@ -18,6 +18,8 @@ use froth_components::motion::{Normal, Position};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+/// Smallest pivot of a fit relative to its diagonal; below it the points lie on a conic, or there are too few.
+const LEAST_PIVOT: f64 = 1e-6;
 /// Times the fit is repeated in the frame found last.
 const REFITS: usize = 2;
 
@@ -68,17 +70,56 @@ fn coefficients(
     offsets: impl Iterator<Item = DVec3>,
 ) -> Option<[f64; 5]> {
     let scale = 1.0 / support;
-    let mut matrix = [[0.0; 5]; 5];
-    let mut rhs = [0.0; 5];
+    let [a, b, c, d, e] = least_squares([t1, t2, n], support, offsets, quadratic_basis)?;
+    Some([a, b, c * scale, d * scale, e * scale])
+}
+
+fn quadratic_basis(u: f64, v: f64) -> [f64; 5] {
+    [u, v, 0.5 * u * u, u * v, 0.5 * v * v]
+}
+
+fn quartic_basis(u: f64, v: f64) -> [f64; 14] {
+    let (uu, uv, vv) = (u * u, u * v, v * v);
+    [u, v, uu, uv, vv, u * uu, u * uv, u * vv, v * vv, uu * uu, uu * uv, uu * vv, uv * vv, vv * vv]
+}
+
+/// Height of the film above the tangent plane at the tangential offset `move_by` from a particle, by a quartic through
+/// the particle itself. `None` if the neighbours do not determine a quartic.
+///
+/// A quadratic reads the curvature of a 0.1 R bump 5 to 10 % wrong; as a carrier slides to and fro over it, that error
+/// would not average out but deflate the film, in proportion to the square of each move.
+#[must_use]
+pub fn height_along<I: Iterator<Item = DVec3>>(
+    normal: DVec3,
+    support: f64,
+    offsets: impl Fn() -> I,
+    move_by: DVec3,
+) -> Option<f64> {
+    let (t1, t2) = normal.any_orthonormal_pair();
+    let fitted = least_squares([t1, t2, normal], support, offsets(), quartic_basis)?;
+    let basis = quartic_basis(move_by.dot(t1) / support, move_by.dot(t2) / support);
+    Some(support * fitted.iter().zip(&basis).map(|(c, b)| c * b).sum::<f64>())
+}
+
+/// Coefficients, in units of `support`, of the heights over `frame = [t1, t2, n]` in a basis that vanishes at the
+/// origin; weight `(1 - q^2)^2`. `None` if the offsets do not determine them.
+fn least_squares<const N: usize>(
+    frame: [DVec3; 3],
+    support: f64,
+    offsets: impl Iterator<Item = DVec3>,
+    basis: impl Fn(f64, f64) -> [f64; N],
+) -> Option<[f64; N]> {
+    let scale = 1.0 / support;
+    let mut matrix = [[0.0; N]; N];
+    let mut rhs = [0.0; N];
     for offset in offsets {
         let r = offset * scale;
         let q = r.length_squared();
         if q >= 1.0 {
             continue;
         }
-        let (u, v, z) = (r.dot(t1), r.dot(t2), r.dot(n));
-        let basis = [u, v, 0.5 * u * u, u * v, 0.5 * v * v];
-        let weight = (1.0 - q) * (1.0 - q);
+        let basis = basis(r.dot(frame[0]), r.dot(frame[1]));
+        let (weight, z) = ((1.0 - q) * (1.0 - q), r.dot(frame[2]));
         for (i, bi) in basis.iter().enumerate() {
             let wb = weight * bi;
             for (m, bj) in matrix[i][..=i].iter_mut().zip(&basis) {
@@ -87,28 +128,27 @@ fn coefficients(
             rhs[i] += wb * z;
         }
     }
-    let [a, b, c, d, e] = cholesky_solve(matrix, rhs)?;
-    Some([a, b, c * scale, d * scale, e * scale])
+    cholesky_solve(matrix, rhs)
 }
 
-/// Solves a symmetric positive definite 5 x 5 system given by its lower triangle; `None` if a pivot all but vanishes.
-fn cholesky_solve(mut m: [[f64; 5]; 5], mut x: [f64; 5]) -> Option<[f64; 5]> {
-    for i in 0..5 {
+/// Solves a symmetric positive definite system given by its lower triangle; `None` if a pivot all but vanishes.
+fn cholesky_solve<const N: usize>(mut m: [[f64; N]; N], mut x: [f64; N]) -> Option<[f64; N]> {
+    for i in 0..N {
         let whole = m[i][i];
         for k in 0..i {
             let sum: f64 = (0..k).map(|l| m[i][l] * m[k][l]).sum();
             m[i][k] = (m[i][k] - sum) / m[k][k];
         }
         let pivot = whole - m[i][..i].iter().map(|v| v * v).sum::<f64>();
-        if pivot <= 1e-9 * whole {
+        if !(pivot > LEAST_PIVOT * whole) {
             return None;
         }
         m[i][i] = pivot.sqrt();
         let sum: f64 = (0..i).map(|k| m[i][k] * x[k]).sum();
         x[i] = (x[i] - sum) / m[i][i];
     }
-    for i in (0..5).rev() {
-        let sum: f64 = (i + 1..5).map(|k| m[k][i] * x[k]).sum();
+    for i in (0..N).rev() {
+        let sum: f64 = (i + 1..N).map(|k| m[k][i] * x[k]).sum();
         x[i] = (x[i] - sum) / m[i][i];
     }
     Some(x)

@@ -221,7 +221,8 @@ impl Stencil {
     pub fn gradient(&self, positions: &[Position], normals: &[Normal], i: usize, q: impl Fn(usize) -> f64) -> DVec3 {
         let own = q(i);
         let slope: DVec3 = self.weighted_offsets(positions, i).map(|(j, w, d)| d * (w * (q(j) - own))).sum();
-        self.inverse_moments[i] * tangential(slope, normals[i].0)
+        // The moments belong to the normals the stencil was built with, which may have turned since.
+        tangential(self.inverse_moments[i] * slope, normals[i].0)
     }
 
     /// `a_i (grad q)_i` as minus the adjoint of [`Stencil::flux_divergence`]: with it, energy passes between flow and

@@ -3,7 +3,9 @@
 //! A program begins at [`Simulation`]; a run with its folder at [`run`].
 
 pub mod checkpoint;
+pub mod cli;
 pub mod errors;
+pub mod gallery;
 pub mod method;
 pub mod picture;
 pub mod run;

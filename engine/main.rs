@@ -1,2 +1,5 @@
 //! The `froth` command line.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    froth::cli::main(std::env::args_os())
+}

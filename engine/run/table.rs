@@ -14,7 +14,7 @@ use crate::simulation::StepReport;
 use crate::whole_file::write_whole;
 
 /// Columns before the observables.
-const FIRST: [&str; 3] = ["step", "time [s]", "step_length [s]"];
+const FIRST: [&str; 2] = ["step", "time [s]"];
 
 /// The table of a run, open at its end.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ fn step_of(line: &str) -> Option<u64> {
 
 /// The shortest digits that read back as the same numbers; empty where nothing was measured.
 fn line(report: &StepReport, columns: &[Observable]) -> String {
-    let mut line = format!("{},{:?},{:?}", report.step, report.time, report.step_length);
+    let mut line = format!("{},{:?}", report.step, report.time);
     for column in columns {
         line.push(',');
         line.extend(column.value.map(|value| format!("{value:?}")));
@@ -131,9 +131,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("observables.csv");
         table_of(&path, 1..3, None);
-        let wanted = "step,time [s],step_length [s],volume [m^3],energy [J]\n\
-                      1,0.1,0.1,0.30000000000000004,\n\
-                      2,0.2,0.1,0.30000000000000004,1e-300\n";
+        let wanted = "step,time [s],volume [m^3],energy [J]\n\
+                      1,0.1,0.30000000000000004,\n\
+                      2,0.2,0.30000000000000004,1e-300\n";
         assert_eq!(fs::read_to_string(path).unwrap(), wanted);
     }
 

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::BuildError;
 use super::frames::Frames;
-use super::{Simulation, scene_hash};
+use super::{STEP_LENGTH, Simulation, scene_hash};
 use crate::checkpoint;
 use crate::method::{METHODS, Method, method};
 use crate::scene::{AuthoredRegistry, Scene, SceneHeader, available_memory};
@@ -180,6 +180,8 @@ fn empty_world(scene: &Scene) -> World {
     world.init_resource::<Clock>();
     world.init_resource::<StepLimits>();
     world.init_resource::<Observables>();
+    // The first column of every run, whatever a method measures.
+    world.resource_mut::<Observables>().record(STEP_LENGTH, "s", 0.0);
     world.init_resource::<Faults>();
     world.init_resource::<ColumnRegistry>();
     StateRegistry::register::<Clock>(&mut world, "clock");

@@ -46,6 +46,9 @@ use crate::scene::Scene;
 /// Part of a time by which a target may be missed: less than any step, more than rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// What the run itself measures.
+const STEP_LENGTH: &str = "step_length";
+
 /// A scene under a method, ready to step.
 pub struct Simulation {
     world: World,
@@ -196,6 +199,7 @@ impl Simulation {
         clock.time = end_of_step(&clock);
         clock.steps += 1;
         let Clock { time, step_length, steps, .. } = *clock;
+        self.world.resource_mut::<Observables>().record(STEP_LENGTH, "s", step_length);
         let tightest = self.world.resource::<StepLimits>().tightest();
         let limited_by = tightest.filter(|(_, limit)| limit.is_finite()).map(|(name, _)| name);
         StepReport { step: steps, time, step_length, limited_by, frame: self.frames.at(time) }

@@ -7,7 +7,6 @@ use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
-use froth_components::clock::Clock;
 use froth_components::film::{Area, SurfaceTension, Surfactant, Thickness};
 use froth_components::gas::{GasPressure, GasVolume};
 use froth_components::kind::{EulerianParticle, LagrangianParticle, Region};
@@ -26,14 +25,12 @@ pub fn observe_films(
     lamellae: Res<Lamellae>,
     liquid: Res<Liquid>,
     atmosphere: Res<Atmosphere>,
-    clock: Res<Clock>,
     motion: Res<NormalMotion>,
     mut observables: ResMut<Observables>,
 ) {
     let (positions, speeds, areas, tension, surfactant, thickness) = columns(&carriers);
     let count = areas.len();
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
-    observables.record("step_length", "s", clock.step_length);
     observables.record("area", "m^2", sum(&|i| areas[i].0));
     observables.record("surface_energy", "J", sum(&|i| 2.0 * tension[i].0 * areas[i].0));
     let mut air = vec![0.0; count];

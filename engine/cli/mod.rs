@@ -1,0 +1,91 @@
+//! The command line. It alone prints, and it alone decides exit codes; everything else is the library.
+//!
+//! | command | file |
+//! |---|---|
+//! | `run`, `resume` | `run`, watched by `progress`, told to stop by `signals` |
+//! | `check` | `check` |
+//! | `explain` | `explain` |
+//! | `scenes` | `gallery` |
+//!
+//! Errors are shown by `report`. Progress goes to standard error, results to standard output.
+
+#![expect(clippy::print_stderr, reason = "a command line prints")]
+
+mod check;
+mod explain;
+mod gallery;
+mod progress;
+mod report;
+mod run;
+mod scene_choice;
+mod signals;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use self::report::{Failure, show};
+
+/// The work is done.
+const DONE: u8 = 0;
+/// A run or a check failed.
+const FAILED: u8 = 1;
+/// Wrong usage, or a wrong scene.
+const WRONG_USAGE: u8 = 2;
+/// A run stopped at a checkpoint, on a signal.
+const STOPPED: u8 = 75;
+
+/// Simulates soap films, bubbles and foams.
+///
+/// Without a command, runs the built-in default scene.
+#[derive(Debug, Parser)]
+#[command(name = "froth", version, about, after_help = "Exit codes: 0 done, 1 a run or check failed, 2 wrong usage or scene, 75 stopped at a checkpoint on a signal.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene and write a run folder
+    Run(run::RunArguments),
+    /// Continue a run from its newest checkpoint
+    Resume(run::ResumeArguments),
+    /// Validate scenes; print what would be built: entities, memory, steps
+    Check(check::CheckArguments),
+    /// Print the schedule of a scene and why each system runs or rests; or the page of an error code such as F0020
+    Explain(explain::ExplainArguments),
+    /// List the built-in scenes
+    Scenes,
+}
+
+/// Runs the command line, with the program's name as the first argument, and gives its exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are no errors to clap's printer either; it chooses the stream.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { WRONG_USAGE } else { DONE });
+        }
+    };
+    let done = match arguments.command {
+        None => run::run(&run::RunArguments::default_scene()),
+        Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Resume(arguments)) => run::resume(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Explain(arguments)) => explain::explain(&arguments),
+        Some(Command::Scenes) => Ok(gallery::list()),
+    };
+    ExitCode::from(done.unwrap_or_else(|failure: Failure| {
+        show(&failure);
+        failure.exit_code()
+    }))
+}
+
+/// Prints a line to standard output. A reader that went away (`froth scenes | head -1`) is no error.
+fn say(line: impl AsRef<str>) {
+    let _ = writeln!(io::stdout(), "{}", line.as_ref());
+}

@@ -1,0 +1,163 @@
+//! The command line: exit codes, who gets which output, what each command says.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::Duration;
+
+use common::{LAST_FRAME, exit_code, froth, output, scene_file, signal, stderr, stdout};
+use froth::gallery::GALLERY;
+use froth::method::METHODS;
+use froth::run::{Manifest, RunState};
+use serde_json::Value;
+
+/// A folder with the small scene.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    scene_file(folder.path());
+    folder
+}
+
+fn manifest(folder: &Path) -> Manifest {
+    Manifest::read(folder).unwrap()
+}
+
+#[test]
+fn a_run_says_where_it_writes_and_numbers_its_folder() {
+    let folder = folder();
+    for number in [1, 2] {
+        let output = output(folder.path(), &["run", "small.ron", "--until", "20 ms"]);
+        assert_eq!(exit_code(&output), 0);
+        assert_eq!(stdout(&output), format!("finished: runs/small-{number}\n"));
+        assert!(stderr(&output).contains("frame 2 of 2: t = 0.0200 of 0.02 s"), "{}", stderr(&output));
+    }
+    let run = folder.path().join("runs/small-1");
+    assert_eq!(fs::read_to_string(run.join("scene.ron")).unwrap(), common::SCENE);
+    assert_eq!(manifest(&run).state, RunState::Finished);
+    assert_eq!(manifest(&run).until_s, 0.02);
+}
+
+#[test]
+fn a_quiet_run_says_nothing() {
+    let folder = folder();
+    let output = output(folder.path(), &["run", "small.ron", "--until", "0.02", "--quiet"]);
+    assert_eq!((exit_code(&output), stdout(&output), stderr(&output)), (0, String::new(), String::new()));
+}
+
+#[test]
+fn a_machine_gets_one_object_per_frame() {
+    let folder = folder();
+    let output = output(folder.path(), &["run", "small.ron", "--json"]);
+    assert_eq!((exit_code(&output), stderr(&output)), (0, String::new()));
+    let objects: Vec<Value> = stdout(&output).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let frames: Vec<u64> = objects.iter().filter_map(|object| object["frame"].as_u64()).collect();
+    assert_eq!(frames, (0..=LAST_FRAME).collect::<Vec<_>>());
+    assert_eq!(objects[0]["event"], "begin");
+    let end = objects.last().unwrap();
+    assert_eq!((&end["event"], &end["state"]), (&"end".into(), &"finished".into()));
+    assert!(end["max_speed_m_s"].as_f64().unwrap() > 0.0 && end["particles"].as_u64().unwrap() > 600);
+}
+
+#[test]
+fn overrides_are_remembered_and_change_the_run() {
+    let folder = folder();
+    let arguments = ["run", "small.ron", "--until", "0.01", "--seed", "3", "--resolution", "1.5", "--method", "melp"];
+    let output = output(folder.path(), &[&arguments[..], &["--threads", "1", "--out", "fine"]].concat());
+    assert_eq!(exit_code(&output), 0, "{}", stderr(&output));
+    let manifest = manifest(&folder.path().join("fine"));
+    assert_eq!((manifest.seed, manifest.threads, manifest.overrides.resolution), (3, 1, Some(1.5)));
+    assert_eq!(manifest.rows["eulerian"], 1350);
+}
+
+#[test]
+fn wrong_usage_and_wrong_scenes_end_with_2() {
+    let folder = folder();
+    fs::write(folder.path().join("broken.ron"), common::SCENE.replace("radius", "radus")).unwrap();
+    let wrong: [&[&str]; 9] = [
+        &["run"],
+        &["run", "small.ron", "--until", "-1"],
+        &["run", "small.ron", "--method", "magic"],
+        &["run", "small.ron", "--quiet", "--json"],
+        &["run", "small.ron", "--resolution", "1e9"],
+        &["run", "broken.ron"],
+        &["check", "small.ron", "broken.ron"],
+        &["resume", "."],
+        &["explain", "F9999"],
+    ];
+    for arguments in wrong {
+        let output = output(folder.path(), arguments);
+        assert_eq!(exit_code(&output), 2, "{arguments:?}: {}", stderr(&output));
+        assert!(!stderr(&output).is_empty());
+    }
+    assert!(!folder.path().join("runs").exists());
+}
+
+#[test]
+fn an_error_in_a_scene_has_a_place_and_a_code() {
+    let folder = folder();
+    fs::write(folder.path().join("broken.ron"), common::SCENE.replace("radius", "radus")).unwrap();
+    let message = stderr(&output(folder.path(), &["check", "broken.ron"]));
+    assert!(message.starts_with("broken.ron:10:20: error[F00"), "{message}");
+    assert!(message.contains("\n  help: "), "{message}");
+}
+
+#[test]
+fn a_slip_in_the_name_of_a_built_in_scene_is_mended() {
+    let folder = folder();
+    let message = stderr(&output(folder.path(), &["run", "giant_buble"]));
+    assert!(message.contains("did you mean `giant_bubble`?"), "{message}");
+}
+
+#[test]
+fn check_says_what_would_be_built() {
+    let folder = folder();
+    let output = output(folder.path(), &["check", "small.ron", GALLERY[0].name]);
+    assert_eq!(exit_code(&output), 0);
+    let text = stdout(&output);
+    assert!(text.contains("600 eulerian, 2400 lagrangian, 0 boundary"), "{text}");
+    assert!(text.contains("13 frames at 100 per second") && text.contains("memory"), "{text}");
+}
+
+#[test]
+fn explain_says_what_runs_and_why() {
+    let folder = folder();
+    let text = stdout(&output(folder.path(), &["explain", "small.ron"]));
+    let line = |name: &str| text.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_default().to_owned();
+    assert!(line("gather liquid (L2E)").ends_with("runs   there is: lagrangian particles"), "{text}");
+    assert!(line("wind").ends_with("rests  needs: a wind"), "{text}");
+    assert!(line("choose the step length").ends_with("runs   in every step"), "{text}");
+    let stages = text.lines().filter(|line| !line.starts_with(' ')).count();
+    assert_eq!(stages, 1 + 12);
+}
+
+#[test]
+fn scenes_lists_every_built_in_scene() {
+    let folder = folder();
+    let text = stdout(&output(folder.path(), &["scenes"]));
+    assert_eq!(text.lines().count(), GALLERY.len());
+    assert!(GALLERY.iter().all(|scene| text.contains(scene.name) && text.contains(scene.summary)));
+}
+
+#[test]
+fn help_names_the_methods_and_is_no_error() {
+    let folder = folder();
+    let output = output(folder.path(), &["run", "--help"]);
+    assert_eq!(exit_code(&output), 0);
+    assert!(METHODS.iter().all(|method| stdout(&output).contains(method.name)));
+}
+
+#[test]
+fn without_arguments_the_default_scene_runs_until_a_signal_stops_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut process = froth(folder.path(), &[]).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let run = folder.path().join(format!("runs/{}-1", GALLERY[0].name));
+    while !run.join("manifest.json").exists() {
+        sleep(Duration::from_millis(20));
+        assert!(process.try_wait().unwrap().is_none(), "the run ended early");
+    }
+    signal(process.id(), "TERM");
+    assert_eq!(process.wait().unwrap().code(), Some(75));
+    assert_eq!(manifest(&run).state, RunState::Stopped);
+}

@@ -1,0 +1,133 @@
+//! What the tests of runs share: one small scene, runs of it, and all bytes that a run leaves.
+
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bevy_ecs::world::World;
+use froth::Simulation;
+use froth::run::{FrameError, Progress, Reporter, RunFolder, RunSettings};
+use froth_components::column::{Column, Plain};
+use froth_components::kind::EulerianParticle;
+use froth_components::motion::Position;
+use froth_systems::rows::read_column;
+
+/// A bubble that wobbles and whose liquid flows: every stage has something to do, and nothing takes long.
+pub(crate) const SCENE: &str = r#"Scene(
+    title: "A small bubble",
+    method: Melp(cfl: 0.5, liquid_per_carrier: 4),
+    resolution: Particles(600),
+    duration: "0.12 s",
+    frames_per_second: 100,
+    seed: 7,
+    entities: [
+        [
+            Sphere(radius: "5 cm"),
+            Bumps(amplitude: 0.02),
+            Film(thickness: Noise(mean: "400 nm", relative: 0.1, frequency: 2), surfactant: WithThickness),
+        ],
+        [ Gravity((0.0, -1.0, 0.0)) ],
+        [ Hover() ],
+    ],
+)
+"#;
+/// Number of its last frame.
+pub(crate) const LAST_FRAME: u64 = 12;
+
+/// The scene as a simulation.
+pub(crate) fn simulation() -> Simulation {
+    Simulation::builder().build_from_text("small.ron", SCENE).unwrap()
+}
+
+/// The scene as a file.
+pub(crate) fn scene_file(folder: &Path) -> PathBuf {
+    let path = folder.join("small.ron");
+    fs::write(&path, SCENE).unwrap();
+    path
+}
+
+/// A frame that holds the carriers' places: as sensitive as a picture, and quicker.
+pub(crate) fn draw(world: &mut World, frame: u64, folder: &RunFolder) -> Result<(), FrameError> {
+    let mut bytes = Vec::new();
+    for position in read_column::<EulerianParticle, Position>(world) {
+        position.value().write_le(&mut bytes);
+    }
+    Ok(folder.write(RunFolder::frame_file(frame), &bytes)?)
+}
+
+/// Raises the stop flag after a step.
+pub(crate) struct StopAfter {
+    step: u64,
+    stop: Arc<AtomicBool>,
+}
+
+impl StopAfter {
+    pub(crate) fn step(step: u64, settings: &RunSettings) -> Self {
+        Self { step, stop: Arc::clone(&settings.stop) }
+    }
+}
+
+impl Reporter for StopAfter {
+    fn step(&mut self, progress: &Progress) {
+        if progress.step == self.step {
+            self.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+/// All bytes of a run that its contract speaks of: the newest checkpoint, the table, the frames.
+pub(crate) fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let newest = files(&folder.join("checkpoints")).pop_last().expect("a checkpoint");
+    let frames = files(&folder.join("frames"));
+    let table = ("observables.csv".to_owned(), fs::read(folder.join("observables.csv")).unwrap());
+    frames.into_iter().chain([newest, table]).collect()
+}
+
+/// Names and bytes of the files of a folder.
+pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    entries.map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())).collect()
+}
+
+/// Asserts that two runs left the same bytes, naming the first file that differs.
+pub(crate) fn assert_same_results(run: &Path, wanted: &Path) {
+    let (run, wanted) = (results(run), results(wanted));
+    assert_eq!(run.keys().collect::<Vec<_>>(), wanted.keys().collect::<Vec<_>>());
+    for (name, bytes) in &wanted {
+        assert!(run[name] == *bytes, "{name} differs");
+    }
+}
+
+/// The program, in a folder.
+pub(crate) fn froth(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_froth"));
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+/// Runs the program to its end.
+pub(crate) fn output(folder: &Path, arguments: &[&str]) -> Output {
+    froth(folder, arguments).output().unwrap()
+}
+
+pub(crate) fn exit_code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Sends a signal, such as `INT`.
+pub(crate) fn signal(process: u32, name: &str) {
+    assert!(Command::new("kill").args([&format!("-{name}"), &process.to_string()]).status().unwrap().success());
+}

@@ -1,0 +1,189 @@
+//! A run folder holds whole files only, whatever happens: kill, full disk, damage.
+
+mod common;
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use common::{
+    StopAfter, assert_same_results, draw, exit_code, files, froth, output, results, scene_file, signal, simulation,
+    stderr,
+};
+use froth::Simulation;
+use froth::checkpoint::CheckpointError;
+use froth::run::{Manifest, NoFrames, Run, RunError, RunFolder, RunSettings, RunState, Silent};
+use froth::simulation::BuildError;
+use tempfile::TempDir;
+
+/// A run that stopped after a step, with a checkpoint after each of the last two.
+fn stopped(parent: &TempDir, name: &str) -> PathBuf {
+    let path = parent.path().join(name);
+    let settings = RunSettings { autosave: std::time::Duration::ZERO, ..RunSettings::default() };
+    let mut stop = StopAfter::step(4, &settings);
+    let mut run = Run::begin(simulation(), RunFolder::create(&path).unwrap(), settings).unwrap();
+    run.drive(&mut draw, &mut stop).unwrap();
+    assert_eq!(checkpoints(&path).len(), 2);
+    path
+}
+
+/// Oldest first.
+fn checkpoints(folder: &Path) -> Vec<PathBuf> {
+    files(&folder.join("checkpoints")).into_keys().map(|name| folder.join("checkpoints").join(name)).collect()
+}
+
+fn spoil(path: &Path, spoil: impl FnOnce(&mut Vec<u8>)) {
+    let mut bytes = fs::read(path).unwrap();
+    spoil(&mut bytes);
+    fs::write(path, bytes).unwrap();
+}
+
+fn flip_a_bit(bytes: &mut Vec<u8>) {
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+}
+
+fn resume(folder: &Path) -> Result<Run, RunError> {
+    Run::resume(folder, Simulation::builder, RunSettings::default())
+}
+
+fn checkpoint_error(result: Result<Run, RunError>) -> CheckpointError {
+    match result.err() {
+        Some(RunError::Build(BuildError::Checkpoint(error))) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_killed_run_leaves_whole_files_and_can_be_resumed() {
+    let parent = tempfile::tempdir().unwrap();
+    scene_file(parent.path());
+    let arguments = |out| ["run", "small.ron", "--json", "--autosave", "1e-9", "--out", out];
+    assert_eq!(exit_code(&output(parent.path(), &arguments("whole"))), 0);
+
+    let mut process = froth(parent.path(), &arguments("killed")).stdout(Stdio::piped()).spawn().unwrap();
+    let lines = BufReader::new(process.stdout.take().unwrap()).lines().map(Result::unwrap);
+    for line in lines {
+        if line.contains(r#""frame":3"#) {
+            signal(process.id(), "KILL");
+        }
+    }
+    assert_eq!(process.wait().unwrap().code(), None);
+
+    let folder = parent.path().join("killed");
+    let table = fs::read_to_string(folder.join("observables.csv")).unwrap();
+    let columns = table.lines().next().unwrap().split(',').count();
+    assert!(table.ends_with('\n') && table.lines().all(|line| line.split(',').count() == columns));
+    assert_eq!(Manifest::read(&folder).unwrap().state, RunState::Running);
+    let newest = checkpoints(&folder).pop().unwrap();
+    Simulation::builder().restore("small.ron", common::SCENE, newest).unwrap();
+
+    assert_eq!(exit_code(&output(parent.path(), &["resume", "killed"])), 0);
+    assert_same_results(&folder, &parent.path().join("whole"));
+}
+
+#[test]
+fn a_frame_that_does_not_fit_on_the_disk_is_named_and_the_others_stay() {
+    let parent = tempfile::tempdir().unwrap();
+    let path = parent.path().join("full");
+    let folder = RunFolder::create(&path).unwrap();
+    // What is written under the temporary name of frame 3 goes to a device that is always full.
+    symlink("/dev/full", path.join("frames/.000003.png.part")).unwrap();
+    let error = Run::begin(simulation(), folder, RunSettings::default()).unwrap().drive(&mut draw, &mut Silent);
+    let message = error.unwrap_err().to_string();
+    assert!(message.starts_with("frame 3 (t = 0.030000 s) is lost: No space left on device"), "{message}");
+    let frames: Vec<String> = files(&path.join("frames")).into_keys().collect();
+    assert_eq!(frames, ["000000.png", "000001.png", "000002.png"]);
+    assert!(matches!(Manifest::read(&path).unwrap().state, RunState::Failed(because) if because == message));
+}
+
+#[test]
+fn a_checkpoint_that_does_not_fit_ends_the_run_with_1_and_leaves_no_part_of_it() {
+    let parent = tempfile::tempdir().unwrap();
+    scene_file(parent.path());
+    let program = env!("CARGO_BIN_EXE_froth");
+    // Files of at most 64 kB, and no signal about it: writing fails as on a full disk.
+    let limited = format!("trap '' XFSZ; ulimit -f 128; exec {program} run small.ron --out full --quiet");
+    let output = Command::new("sh").args(["-c", &limited]).current_dir(parent.path()).output().unwrap();
+    assert_eq!(exit_code(&output), 1);
+    assert!(stderr(&output).contains("cannot be written: File too large"), "{}", stderr(&output));
+    assert!(files(&parent.path().join("full/checkpoints")).is_empty());
+    assert!(!files(&parent.path().join("full"))["observables.csv"].is_empty());
+}
+
+#[test]
+fn a_damaged_checkpoint_is_passed_over_for_the_one_before() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = stopped(&parent, "damaged");
+    spoil(&checkpoints(&folder)[1], flip_a_bit);
+    let mut run = resume(&folder).unwrap();
+    assert_eq!(run.simulation().clock().steps, 3);
+    run.drive(&mut draw, &mut Silent).unwrap();
+    let whole = parent.path().join("whole");
+    let begun = Run::begin(simulation(), RunFolder::create(&whole).unwrap(), RunSettings::default());
+    begun.unwrap().drive(&mut draw, &mut Silent).unwrap();
+    assert_same_results(&folder, &whole);
+}
+
+#[test]
+fn damaged_truncated_and_foreign_checkpoints_are_refused_by_name() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = stopped(&parent, "refused");
+    for checkpoint in checkpoints(&folder) {
+        spoil(&checkpoint, flip_a_bit);
+    }
+    let error = checkpoint_error(resume(&folder));
+    assert!(matches!(&error, CheckpointError::Damaged { path, .. } if *path == checkpoints(&folder)[1]), "{error}");
+    for checkpoint in checkpoints(&folder) {
+        spoil(&checkpoint, |bytes| bytes.truncate(bytes.len() - 100));
+    }
+    assert!(matches!(checkpoint_error(resume(&folder)), CheckpointError::Truncated { .. }));
+    for checkpoint in checkpoints(&folder) {
+        fs::write(checkpoint, common::SCENE).unwrap();
+    }
+    assert!(matches!(checkpoint_error(resume(&folder)), CheckpointError::NotACheckpoint { .. }));
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_or_with_other_overrides_is_refused() {
+    let parent = tempfile::tempdir().unwrap();
+    let newest = checkpoints(&stopped(&parent, "one")).pop().unwrap();
+    let other_scene = common::SCENE.replace("5 cm", "6 cm");
+    for (scene, seed) in [(other_scene.as_str(), None), (common::SCENE, Some(8))] {
+        let builder = seed.into_iter().fold(Simulation::builder(), |builder, seed| builder.seed(seed));
+        let error = builder.restore("small.ron", scene, &newest).err();
+        assert!(matches!(error, Some(BuildError::Checkpoint(CheckpointError::OtherScene { .. }))), "{error:?}");
+    }
+}
+
+#[test]
+fn a_run_never_overwrites_another_one() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = stopped(&parent, "taken");
+    let before = results(&folder);
+    assert!(matches!(RunFolder::create(&folder), Err(RunError::Occupied { .. })));
+    scene_file(parent.path());
+    assert_eq!(exit_code(&output(parent.path(), &["run", "small.ron", "--out", "taken"])), 2);
+    assert!(results(&folder) == before);
+}
+
+#[test]
+fn two_processes_never_write_one_folder() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = stopped(&parent, "shared");
+    let first = resume(&folder).unwrap();
+    assert!(matches!(resume(&folder), Err(RunError::InUse { .. })));
+    drop(first);
+    resume(&folder).unwrap().drive(&mut NoFrames, &mut Silent).unwrap();
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let parent = tempfile::tempdir().unwrap();
+    scene_file(parent.path());
+    let output = output(parent.path(), &["run", "small.ron", "--out", "small.ron/run"]);
+    assert_eq!(exit_code(&output), 1);
+    assert!(stderr(&output).starts_with("error: the run folder `small.ron/run` cannot be made"), "{}", stderr(&output));
+}

@@ -3,11 +3,14 @@
 mod common;
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
 use common::{LAST_FRAME, exit_code, froth, output, scene_file, signal, stderr, stdout};
+use froth::errors::error_page;
 use froth::gallery::GALLERY;
 use froth::method::METHODS;
 use froth::run::{Manifest, RunState};
@@ -133,6 +136,13 @@ fn explain_says_what_runs_and_why() {
 }
 
 #[test]
+fn explain_prints_the_page_of_an_error_code() {
+    let folder = folder();
+    let output = output(folder.path(), &["explain", "f0020"]);
+    assert_eq!((exit_code(&output), stdout(&output).trim_end()), (0, error_page("F0020").unwrap().trim_end()));
+}
+
+#[test]
 fn scenes_lists_every_built_in_scene() {
     let folder = folder();
     let text = stdout(&output(folder.path(), &["scenes"]));
@@ -151,7 +161,7 @@ fn help_names_the_methods_and_is_no_error() {
 #[test]
 fn without_arguments_the_default_scene_runs_until_a_signal_stops_it() {
     let folder = tempfile::tempdir().unwrap();
-    let mut process = froth(folder.path(), &[]).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let mut process = froth(folder.path(), &[]).stdout(Stdio::null()).spawn().unwrap();
     let run = folder.path().join(format!("runs/{}-1", GALLERY[0].name));
     while !run.join("manifest.json").exists() {
         sleep(Duration::from_millis(20));
@@ -160,4 +170,18 @@ fn without_arguments_the_default_scene_runs_until_a_signal_stops_it() {
     signal(process.id(), "TERM");
     assert_eq!(process.wait().unwrap().code(), Some(75));
     assert_eq!(manifest(&run).state, RunState::Stopped);
+}
+
+#[test]
+fn a_second_signal_kills() {
+    let folder = folder();
+    // Many particles, so that the first step is still going on.
+    let arguments = ["run", "small.ron", "--resolution", "4", "--json"];
+    let mut process = froth(folder.path(), &arguments).stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(process.stdout.take().unwrap()).lines().map(Result::unwrap);
+    lines.find(|line| line.contains(r#""frame":0"#)).unwrap();
+    signal(process.id(), "INT");
+    sleep(Duration::from_millis(10));
+    signal(process.id(), "INT");
+    assert_eq!(process.wait().unwrap().code(), Some(128 + 2));
 }

@@ -110,7 +110,7 @@ fn a_checkpoint_that_does_not_fit_ends_the_run_with_1_and_leaves_no_part_of_it()
     assert_eq!(exit_code(&output), 1);
     assert!(stderr(&output).contains("cannot be written: File too large"), "{}", stderr(&output));
     assert!(files(&parent.path().join("full/checkpoints")).is_empty());
-    assert!(!files(&parent.path().join("full"))["observables.csv"].is_empty());
+    assert!(parent.path().join("full/observables.csv").metadata().unwrap().len() > 0);
 }
 
 #[test]

@@ -14,11 +14,19 @@ pub struct BuiltInScene {
 }
 
 /// Every built-in scene, in the order of listings. The first is what `froth` alone runs.
-pub const GALLERY: &[BuiltInScene] = &[BuiltInScene {
-    name: "giant_bubble",
-    summary: "a giant bubble wobbles back to a sphere while its liquid drains and swirls",
-    text: include_str!("../scenes/giant_bubble.ron"),
-}];
+pub const GALLERY: &[BuiltInScene] = &[
+    BuiltInScene {
+        name: "giant_bubble",
+        summary: "a giant bubble wobbles back to a sphere while its liquid drains and swirls",
+        text: include_str!("../scenes/giant_bubble.ron"),
+    },
+    // Scenes of `froth verify`.
+    BuiltInScene {
+        name: "shape_mode",
+        summary: "law: a bubble of film mass alone rings in its lowest shape mode",
+        text: include_str!("../scenes/shape_mode.ron"),
+    },
+];
 
 /// The built-in scene of a name.
 #[must_use]

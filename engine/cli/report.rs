@@ -19,6 +19,8 @@ pub(super) enum Failure {
     Run(#[from] RunError),
     #[error("there is no error code `{0}`; codes look like F0020")]
     NoSuchCode(String),
+    #[error("there is no law `{0}`{hint}; `froth verify --list` lists them", hint = .1.map(|name| format!(", did you mean `{name}`?")).unwrap_or_default())]
+    NoSuchLaw(String, Option<&'static str>),
     #[error("{0} threads cannot be started: {1}")]
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error("signals cannot be caught: {0}")]
@@ -47,7 +49,7 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_) | Self::NoSuchLaw(..) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

@@ -88,11 +88,15 @@ fn along_x() -> Direction {
 #[serde(deny_unknown_fields)]
 pub struct Hover {}
 
-/// Still air brakes the liquid along the film: `du/dt = -rate * u` for the tangential part.
+/// Still air brakes the film: `du/dt = -rate * u` for the liquid along the film, `ds/dt = -normal * s` for the film's own
+/// motion along its normal (shape oscillations; in air a bubble of 10 cm loses them at a few per second).
 #[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirDrag {
-    /// Rate, per second.
+    /// Rate for the flow along the film, per second.
     #[serde(deserialize_with = "range::not_negative")]
     pub rate: Rate,
+    /// Rate for the motion along the normal, per second. Default 0.
+    #[serde(default, deserialize_with = "range::not_negative")]
+    pub normal: Rate,
 }

@@ -3,7 +3,7 @@
 //! Each is a system in [`Stage::Forces`](crate::stage::Stage::Forces) that adds to `ExternalAcceleration` (per mass of
 //! liquid) or `ExternalPressure` (per area of film), whatever the method. [`clear`] goes first.
 
-use crate::rows::{columns, columns_mut};
+use crate::rows::columns_mut;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res};
@@ -13,7 +13,7 @@ use froth_components::film::{Area, Thickness, Warmth};
 use froth_components::kind::EulerianParticle;
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Position, Velocity};
+use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, NormalSpeed, Position, Velocity};
 use glam::{DMat3, DVec3};
 
 pub mod heat;
@@ -54,16 +54,28 @@ pub fn drag_by_wind(
     }
 }
 
-/// Brakes the liquid's flow along the film in still air: `-rate u` for the tangential part.
+/// Brakes the film in still air: its liquid's flow at `rate`, its motion along the normal, air included, at `normal`.
 pub fn brake_in_air(
     drags: Query<&AirDrag>,
-    mut carriers: Query<(&Velocity, &Normal, &mut ExternalAcceleration), With<EulerianParticle>>,
+    mut carriers: Query<
+        (&Velocity, &Normal, &NormalSpeed, &Thickness, &mut ExternalAcceleration, &mut ExternalPressure),
+        With<EulerianParticle>,
+    >,
+    lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
     clock: Res<Clock>,
 ) {
-    let (velocities, normals, mut pushes) = columns_mut(&mut carriers);
-    let rate = relaxation(drags.iter().map(|drag| drag.rate.si()).sum(), clock.step_length);
+    let (velocities, normals, speeds, thickness, mut pushes, mut pressures) = columns_mut(&mut carriers);
+    let along = relaxation(drags.iter().map(|drag| drag.rate.si()).sum(), clock.step_length);
     for ((push, u), n) in pushes.bypass_change_detection().iter_mut().zip(velocities).zip(normals) {
-        push.0 -= (u.0 - n.0 * n.0.dot(u.0)) * rate;
+        push.0 -= (u.0 - n.0 * n.0.dot(u.0)) * along;
+    }
+    let across = relaxation(drags.iter().map(|drag| drag.normal.si()).sum(), clock.step_length);
+    let pressures = pressures.bypass_change_detection();
+    for film in &lamellae.films {
+        for i in film.carriers.clone() {
+            pressures[i].0 -= across * (liquid.density * thickness[i].0 + film.air_mass) * speeds[i].0;
+        }
     }
 }
 
@@ -118,16 +130,4 @@ pub fn hold_up(
         let slope = moment.inverse() * weight;
         rows.for_each(|i| pressures[i].0 -= slope.dot(positions[i].0 - centre));
     }
-}
-
-/// Net external force on a film's rows, N: for tests and observers.
-#[must_use]
-pub fn net_force(
-    carriers: &Query<(&Normal, &Area, &Thickness, &ExternalAcceleration, &ExternalPressure), With<EulerianParticle>>,
-    density: f64,
-) -> DVec3 {
-    let (normals, areas, thickness, pushes, pressures) = columns(carriers);
-    (0..areas.len())
-        .map(|i| (pushes[i].0 * (density * thickness[i].0) + normals[i].0 * pressures[i].0) * areas[i].0)
-        .sum()
 }

@@ -152,6 +152,7 @@ pub fn measure_pressure(
             let measured = enclosed_volume(positions, normals, &stencil.0.areas, film.carriers.clone());
             let share = -(-clock.step_length / VOLUME_MEMORY).exp_m1();
             let follow = share * (measured - volume.0);
+            observables.record(&format!("measured_volume_{}", film.region.0), "m^3", measured);
             observables.record("volume_followed", "1", follow / volume.0);
             volume.0 += follow;
             let law = IdealGas {

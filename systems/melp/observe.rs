@@ -1,9 +1,7 @@
 //! What a run of MELP measures in every step.
 
 use super::gather::MaterialColumns;
-use super::measure::enclosed_volume;
 use super::normal_motion::NormalMotion;
-use super::state::FilmStencil;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
@@ -14,24 +12,23 @@ use froth_components::gas::{GasPressure, GasVolume};
 use froth_components::kind::{EulerianParticle, LagrangianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::{Atmosphere, Liquid};
-use froth_components::motion::{Normal, NormalSpeed, Position};
+use froth_components::motion::{NormalSpeed, Position};
 use glam::DVec3;
 
 /// Records area, volumes, pressures, energies and momentum.
 pub fn observe_films(
     carriers: Query<
-        (&Position, &Normal, &NormalSpeed, &Area, &SurfaceTension, &Surfactant, &Thickness),
+        (&Position, &NormalSpeed, &Area, &SurfaceTension, &Surfactant, &Thickness),
         With<EulerianParticle>,
     >,
     gases: Query<(&GasVolume, &GasPressure), With<Region>>,
-    stencil: Res<FilmStencil>,
     lamellae: Res<Lamellae>,
     liquid: Res<Liquid>,
     atmosphere: Res<Atmosphere>,
     motion: Res<NormalMotion>,
     mut observables: ResMut<Observables>,
 ) {
-    let (positions, normals, speeds, areas, tension, surfactant, thickness) = columns(&carriers);
+    let (positions, speeds, areas, tension, surfactant, thickness) = columns(&carriers);
     let count = areas.len();
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
     observables.record("area", "m^2", sum(&|i| areas[i].0));
@@ -57,9 +54,7 @@ pub fn observe_films(
     for (film, (volume, pressure)) in lamellae.films.iter().zip(&gases) {
         if film.rim.is_none() {
             let name = |what: &str| format!("{what}_{}", film.region.0);
-            let measured = enclosed_volume(positions, normals, &stencil.0.areas, film.carriers.clone());
             observables.record(&name("volume"), "m^3", volume.0);
-            observables.record(&name("measured_volume"), "m^3", measured);
             observables.record(&name("excess_pressure"), "Pa", pressure.0 - atmosphere.pressure);
         }
     }

@@ -146,5 +146,7 @@ fn positive(text: &str) -> Result<f64, String> {
 /// A positive time: a plain number of seconds, or a number with a unit.
 fn seconds(text: &str) -> Result<f64, String> {
     let time = text.parse().or_else(|_| Time::parse(text).map(Time::si));
-    time.ok().filter(|time: &f64| time.is_finite() && *time > 0.0).ok_or_else(|| "a positive time is wanted, e.g. 0.5 or \"20 ms\"".to_owned())
+    time.ok()
+        .filter(|time: &f64| time.is_finite() && *time > 0.0)
+        .ok_or_else(|| "a positive time is wanted, e.g. 0.5 or \"20 ms\"".to_owned())
 }

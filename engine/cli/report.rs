@@ -6,6 +6,7 @@ use miette::{Diagnostic, GraphicalReportHandler};
 use thiserror::Error;
 
 use super::{FAILED, WRONG_USAGE};
+use crate::frames::PictureFramesError;
 use crate::run::RunError;
 use crate::scene::SceneError;
 use crate::simulation::BuildError;
@@ -17,6 +18,8 @@ pub(super) enum Failure {
     Build(#[from] BuildError),
     #[error(transparent)]
     Run(#[from] RunError),
+    #[error(transparent)]
+    Pictures(PictureFramesError),
     #[error("there is no error code `{0}`; codes look like F0020")]
     NoSuchCode(String),
     #[error("there is no law `{0}`{hint}; `froth verify --list` lists them", hint = .1.map(|name| format!(", did you mean `{name}`?")).unwrap_or_default())]
@@ -30,6 +33,15 @@ pub(super) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::Build(error.into())
+    }
+}
+
+impl From<PictureFramesError> for Failure {
+    fn from(error: PictureFramesError) -> Self {
+        match error {
+            PictureFramesError::Scene(error) => (*error).into(),
+            other => Self::Pictures(other),
+        }
     }
 }
 
@@ -49,7 +61,10 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::NoSuchLaw(..) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_)
+            | Self::NoSuchLaw(..)
+            | Self::Pictures(_)
+            | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

@@ -54,6 +54,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
+    plan.add(Stage::Clock, "limit the step by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "link the particle sets", links::link_material, liquid());
     plan.add(Stage::Gather, "gather liquid (L2E)", gather::gather_liquid, liquid());

@@ -5,6 +5,7 @@
 pub mod checkpoint;
 pub mod cli;
 pub mod errors;
+pub mod frames;
 pub mod gallery;
 pub mod method;
 pub mod picture;

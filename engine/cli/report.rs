@@ -6,6 +6,7 @@ use miette::{Diagnostic, GraphicalReportHandler};
 use thiserror::Error;
 
 use super::{FAILED, WRONG_USAGE};
+use crate::frames::PictureFramesError;
 use crate::run::RunError;
 use crate::scene::SceneError;
 use crate::simulation::BuildError;
@@ -17,6 +18,8 @@ pub(super) enum Failure {
     Build(#[from] BuildError),
     #[error(transparent)]
     Run(#[from] RunError),
+    #[error(transparent)]
+    Pictures(PictureFramesError),
     #[error("there is no error code `{0}`; codes look like F0020")]
     NoSuchCode(String),
     #[error("{0} threads cannot be started: {1}")]
@@ -28,6 +31,15 @@ pub(super) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::Build(error.into())
+    }
+}
+
+impl From<PictureFramesError> for Failure {
+    fn from(error: PictureFramesError) -> Self {
+        match error {
+            PictureFramesError::Scene(error) => (*error).into(),
+            other => Self::Pictures(other),
+        }
     }
 }
 
@@ -47,7 +59,7 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_) | Self::Pictures(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

@@ -59,7 +59,9 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::Pictures(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_)
+            | Self::Pictures(_)
+            | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

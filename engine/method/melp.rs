@@ -119,8 +119,7 @@ pub fn register(world: &mut World) {
     ColumnRegistry::register::<Region, ReferencePressure>(world);
     ColumnRegistry::register::<Region, GasExponent>(world);
     StateRegistry::register::<Lamellae>(world, "lamellae");
-    let (settings, maximum_step) = (settings(world), world.resource::<SceneHeader>().maximum_step);
-    world.insert_resource(Melp::new(&settings, maximum_step.map(|step| step.si())));
+    world.insert_resource(Melp::new(&settings(world)));
     world.init_resource::<FilmStencil>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();

@@ -45,6 +45,12 @@ pub const GALLERY: &[BuiltInScene] = &[
         summary: "a bubble at rest at 1 atm stays at rest",
         text: include_str!("../scenes/resting_bubble.ron"),
     },
+    // For `froth verify` alone.
+    BuiltInScene {
+        name: "shape_mode",
+        summary: "law: a bubble of film mass alone rings in its lowest shape mode",
+        text: include_str!("../scenes/shape_mode.ron"),
+    },
 ];
 
 /// The built-in scene of a name.

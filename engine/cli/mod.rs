@@ -5,6 +5,7 @@
 //! | `run`, `resume` | `run`, watched by `progress`, told to stop by `signals` |
 //! | `check` | `check` |
 //! | `explain` | `explain` |
+//! | `verify` | `verify` |
 //! | `scenes` | `gallery` |
 //!
 //! Errors are shown by `report`. Progress goes to standard error, results to standard output.
@@ -19,6 +20,7 @@ mod report;
 mod run;
 mod scene_choice;
 mod signals;
+mod verify;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -62,6 +64,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Print the schedule of a scene and why each system runs or rests; or the page of an error code such as F0020
     Explain(explain::ExplainArguments),
+    /// Measure physical laws: expected, measured, error, tolerance, observed order
+    Verify(verify::VerifyArguments),
     /// List the built-in scenes
     Scenes,
 }
@@ -82,6 +86,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Resume(arguments)) => run::resume(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Explain(arguments)) => explain::explain(&arguments),
+        Some(Command::Verify(arguments)) => verify::verify(&arguments),
         Some(Command::Scenes) => Ok(gallery::list()),
     };
     ExitCode::from(done.unwrap_or_else(|failure: Failure| {

@@ -43,7 +43,12 @@ const STOPPED: u8 = 75;
 ///
 /// Without a command, runs the built-in default scene.
 #[derive(Debug, Parser)]
-#[command(name = "froth", version, about, after_help = "Exit codes: 0 done, 1 a run or check failed, 2 wrong usage or scene, 75 stopped at a checkpoint on a signal.")]
+#[command(
+    name = "froth",
+    version,
+    about,
+    after_help = "Exit codes: 0 done, 1 a run or check failed, 2 wrong usage or scene, 75 stopped at a checkpoint on a signal."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,

@@ -54,6 +54,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
+    plan.add(Stage::Clock, "limit the step by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "link the particle sets", links::link_material, liquid());
     plan.add(Stage::Gather, "gather liquid (L2E)", gather::gather_liquid, liquid());
@@ -118,8 +119,7 @@ pub fn register(world: &mut World) {
     ColumnRegistry::register::<Region, ReferencePressure>(world);
     ColumnRegistry::register::<Region, GasExponent>(world);
     StateRegistry::register::<Lamellae>(world, "lamellae");
-    let (settings, maximum_step) = (settings(world), world.resource::<SceneHeader>().maximum_step);
-    world.insert_resource(Melp::new(&settings, maximum_step.map(|step| step.si())));
+    world.insert_resource(Melp::new(&settings(world)));
     world.init_resource::<FilmStencil>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();

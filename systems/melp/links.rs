@@ -7,7 +7,9 @@
 //! Deng 2022, Eq. 6, whose weights (`b = 0`) do not conserve momentum in the affine transfer.
 //!
 //! # Limits
-//! Near a rim the correction is shortened so that no weight is negative; there only constants pass exactly.
+//! Next to a rim, where the correction would make a weight negative, there is none, and velocity gradients are dropped
+//! (`is_one_sided`): only constants pass exactly there. Extrapolated linear fields, passed to and fro, grow by a tenth per
+//! step.
 
 use super::state::{FilmStencil, Transfers};
 use crate::rows::columns;
@@ -74,6 +76,8 @@ pub struct Link {
     pub constant: f64,
     /// `b`: linear part, m.
     pub linear: DVec3,
+    /// Whether all carriers lie to one side, beyond a rim: a linear field could only be extrapolated.
+    pub is_one_sided: bool,
 }
 
 impl Link {
@@ -123,8 +127,10 @@ pub fn link_one(carriers: Carriers, kernel: &Kernel, place: DVec3, normal: DVec3
     let spread = second - outer(sum, mean, mean);
     let slope = -(tangential_inverse(spread, normal) * first);
     let lowest = nearby[..count].iter().map(|(r, _)| 1.0 + slope.dot(*r - mean)).fold(f64::INFINITY, f64::min);
-    let slope = if lowest < 0.0 { slope / (1.0 - lowest) } else { slope };
-    Link { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum }
+    if lowest < 0.0 {
+        return Link { constant: 1.0 / sum, linear: DVec3::ZERO, is_one_sided: true };
+    }
+    Link { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum, is_one_sided: false }
 }
 
 /// Builds the stencil of the carriers where they stand.

@@ -26,6 +26,7 @@
 //! of the film's share of the inertia.
 
 use super::state::FilmStencil;
+use crate::clock::StepLimits;
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::resource::Resource;
@@ -47,6 +48,17 @@ use std::ops::Range;
 
 /// Longest substep, in units of `dx / c`. The explicit limit is 1.0 to 1.2.
 pub const SUBSTEP: f64 = 0.4;
+
+/// Most substeps on one frozen geometry: the fastest mode (1.67 c/dx) then turns by less than half a period in a step,
+/// so that what is held over a step cannot feed it.
+pub const SUBSTEPS_PER_GEOMETRY: f64 = 4.0;
+/// Factor on the stiffness `K` within a step, dimensionless.
+///
+/// The next step's geometry answers a displacement by a stiffness that differs from the frozen `K` by a relative `e`
+/// (irregular neighbours turn the normals). Over a step a mode then grows by `1 + e/2 (1 - cos w dt)`: a bubble at rest
+/// rings by itself after half a second where `e > 0`. A `K` stiffer than any real response makes `e < 0`: those modes
+/// are damped instead, slow ones (`w dt << 1`) by `(1/8) w^2 dt` per second, and steps of one substep not at all.
+const STIFFENING: f64 = 1.5;
 
 /// What the normal motion reads; all slices are per carrier.
 #[derive(Clone, Copy)]
@@ -205,7 +217,7 @@ impl<'a> FrozenFilm<'a> {
             let (own, tail) = rest.split_at_mut(forces.stencil.lists.range(i).len());
             let n = forces.normals[i].0;
             for (slot, (j, w)) in own.iter_mut().zip(forces.stencil.pairs(i)) {
-                *slot = w * (forces.tension[i] + forces.tension[j]) * n.dot(forces.normals[j].0);
+                *slot = STIFFENING * w * (forces.tension[i] + forces.tension[j]) * n.dot(forces.normals[j].0);
             }
             rest = tail;
         }
@@ -308,7 +320,7 @@ impl NormalForces<'_> {
     fn diagonal(&self, i: usize) -> f64 {
         let film: f64 = self.stencil.pairs(i).map(|(j, w)| w * (self.tension[i] + self.tension[j])).sum();
         let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
-        4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - film - rim
+        4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - STIFFENING * (film + rim)
     }
 }
 
@@ -418,4 +430,18 @@ fn tension_gradients(stencil: &Stencil, positions: &[Position], normals: &[Norma
 /// Sum of the squared entries: of a shape operator, the sum of squared principal curvatures.
 fn squared_norm(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|v| v * v).sum()
+}
+
+/// Proposes the longest step that one frozen geometry can serve.
+pub fn limit_step_by_tension(
+    carriers: Query<(&SurfaceTension, &Thickness), With<EulerianParticle>>,
+    lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
+    mut limits: ResMut<StepLimits>,
+) {
+    let (tension, thickness) = columns(&carriers);
+    let inertia = Inertia { density: liquid.density, lamellae: &lamellae }.per_area(thickness);
+    let squared_speed = ordered_max(inertia.len(), 0.0, |i| 2.0 * tension[i].0 / inertia[i]);
+    let substep = SUBSTEP * lamellae.spacing / squared_speed.sqrt();
+    limits.propose("tension", SUBSTEPS_PER_GEOMETRY * substep);
 }

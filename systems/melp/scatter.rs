@@ -74,7 +74,7 @@ pub fn scatter_all(
         let taken = Taken::at(carriers, flow, targets, &kernel, l);
         let flip = velocity.0 + taken.change;
         velocity.0 = tangential(taken.velocity.lerp(flip, blend.flip), targets.normals[l].0);
-        gradient.0 = if blend.affine { taken.gradient } else { DMat3::ZERO };
+        gradient.0 = if blend.affine && !targets.links[l].is_one_sided { taken.gradient } else { DMat3::ZERO };
         *gamma = taken.concentration;
     });
 }

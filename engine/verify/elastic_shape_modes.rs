@@ -14,6 +14,7 @@
 //! `rho eta (1 + 4/N) + m_air`.
 
 use froth_systems::sampling::harmonic::Harmonic;
+use std::f64::consts::{PI, TAU};
 
 use super::finding::{Finding, Refinement};
 use super::oscillation::Oscillation;
@@ -28,20 +29,60 @@ const AIR: f64 = 0.4 * 1.2 * RADIUS;
 const PERIODS: f64 = 1.25;
 
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
-    let counts: &[u32] = effort.choose(&[400, 800, 1600], &[1000, 2000, 4000]);
-    let finding = |degree: u32| {
-        let exact = slow_frequency(degree, AIR);
+    let (air, bare) = (Inertia::air(), Inertia::bare());
+    let mut findings = Vec::new();
+    for degree in [2, 3, 4] {
+        findings.push(air.finding(degree, effort.choose(&[400, 800, 1600], &[1000, 2000, 4000]))?);
+    }
+    for degree in effort.choose(&[2][..], &[2, 3, 4]) {
+        findings.push(bare.finding(*degree, effort.choose(&[300, 600, 1200], &[1000, 2000, 4000]))?);
+    }
+    Ok(findings)
+}
+
+/// What moves with the film along its normal.
+struct Inertia {
+    what: &'static str,
+    in_scene: &'static str,
+    /// Of the air, kg/m^2.
+    mass: f64,
+    /// Longest step as a part of the spacing over the speed of waves in the bare film.
+    courant: f64,
+}
+
+impl Inertia {
+    const fn air() -> Self {
+        Self { what: "with the air's inertia", in_scene: "Local", mass: AIR, courant: f64::INFINITY }
+    }
+
+    const fn bare() -> Self {
+        Self { what: "of bare film mass", in_scene: "None", mass: 0.0, courant: 0.2 }
+    }
+
+    fn finding(&self, degree: u32, counts: &[u32]) -> Result<Finding, LawError> {
+        let exact = slow_frequency(degree, self.mass);
         let mut refinement = Refinement::default();
         let mut measured = f64::NAN;
         for count in counts {
-            measured = ring(degree, *count, "Local", exact)?.frequency;
+            measured = self.ring(degree, *count, exact)?.frequency;
             refinement.add(1.0 / f64::from(*count).sqrt(), measured / exact - 1.0);
         }
-        let (exact, measured) = (exact / std::f64::consts::TAU, measured / std::f64::consts::TAU);
-        let what = format!("frequency n = {degree} with the air's inertia, Hz");
-        Ok(Finding::relative(what, exact, measured, 0.02).converging(&refinement, 1.0))
-    };
-    [2, 3, 4].into_iter().map(finding).collect()
+        let what = format!("frequency n = {degree} {}, Hz", self.what);
+        Ok(Finding::relative(what, exact / TAU, measured / TAU, 0.02).converging(&refinement, 1.0))
+    }
+
+    fn ring(&self, degree: u32, count: u32, exact: f64) -> Result<Oscillation, LawError> {
+        let scene = SceneRun::of("elastic_shape_mode").with("degree: 2", &format!("degree: {degree}"));
+        let scene = scene.with("Particles(2000)", &format!("Particles({count})"));
+        let mut simulation = scene.with("air: Local", &format!("air: {}", self.in_scene)).begin()?;
+        let harmonic = Harmonic::new(degree, 0);
+        let (period, root) = (TAU / exact, f64::from(count).sqrt());
+        let spacing = (4.0 * PI).sqrt() * RADIUS / root;
+        let step = (0.7 / root * period).min(self.courant * spacing / (2.0 * TENSION / MASS).sqrt());
+        let samples =
+            series(&mut simulation, step, PERIODS * period, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
+        Ok(Oscillation::fit(&samples, exact))
+    }
 }
 
 /// The slower of the two frequencies of the equations above, rad/s.
@@ -55,17 +96,6 @@ fn slow_frequency(degree: u32, air: f64) -> f64 {
     let d = 2.0 * ELASTICITY * big / tangential;
     let slow = (a * d - b * b) / (0.5 * (a + d) + (0.25 * (a - d).powi(2) + b * b).sqrt());
     slow.sqrt() / RADIUS
-}
-
-fn ring(degree: u32, count: u32, air: &str, exact: f64) -> Result<Oscillation, LawError> {
-    let scene = SceneRun::of("elastic_shape_mode").with("degree: 2", &format!("degree: {degree}"));
-    let scene = scene.with("Particles(2000)", &format!("Particles({count})"));
-    let mut simulation = scene.with("air: Local", &format!("air: {air}")).begin()?;
-    let harmonic = Harmonic::new(degree, 0);
-    let period = std::f64::consts::TAU / exact;
-    let step = 0.7 / f64::from(count).sqrt() * period;
-    let samples = series(&mut simulation, step, PERIODS * period, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
-    Ok(Oscillation::fit(&samples, exact))
 }
 
 #[cfg(test)]

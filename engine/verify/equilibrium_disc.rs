@@ -2,8 +2,16 @@
 //!
 //! # Equation
 //! `Gamma/eta` is the same everywhere, so that uniform tension is uniform thickness: its deviation tends to 0.
+//!
+//! Shown is `V Gamma/S`, with the concentration that the Marangoni solve gives. The liquid per area as gathered from the
+//! material particles is the same up to their sampling noise.
+
+use froth_components::film::LiquidVolume;
+use froth_components::kind::EulerianParticle;
+use froth_systems::melp::state::Transfers;
 
 use super::finding::Finding;
+use super::sampled::root_mean_square;
 use super::scene_run::SceneRun;
 use super::{Effort, LawError};
 
@@ -21,7 +29,13 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
         fastest = get("mean_speed");
         first = first.or(Some(deviation));
     }
+    let amounts: Vec<f64> = simulation.column::<EulerianParticle, LiquidVolume>().iter().map(|v| v.0).collect();
+    let duals = &simulation.world().resource::<Transfers>().dual_areas;
+    let gathered: Vec<f64> = amounts.iter().zip(duals).map(|(v, a)| v / a).collect();
+    let mean = gathered.iter().sum::<f64>() / gathered.len() as f64;
+    let noise = root_mean_square(gathered.iter().map(|eta| eta / mean - 1.0));
     Ok(vec![
+        Finding::vanishing("liquid per area as gathered, deviation over mean", noise, 0.05),
         Finding::vanishing("thickness shown, deviation over mean, at the end", deviation, 5e-3),
         Finding::vanishing("the same relative to that after the first step", deviation / first.unwrap_or(f64::NAN), 0.1),
         Finding::vanishing("mean speed of the liquid, m/s", fastest, 0.01),

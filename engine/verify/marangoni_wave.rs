@@ -29,19 +29,20 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let spacings: [f64; 3] = effort.choose([7e-3, 5e-3, 3.5e-3], [3.5e-3, 2.5e-3, 1.75e-3]);
     let speed = (2.0 * ELASTICITY / MASS).sqrt();
     let exact = PI * speed / LENGTH;
-    let mut refinement = Refinement::default();
-    let (mut measured, mut damping, mut implicit) = (f64::NAN, f64::NAN, f64::NAN);
+    let (mut refinement, mut losses) = (Refinement::default(), Refinement::default());
+    let (mut measured, mut loss) = (f64::NAN, f64::NAN);
     for spacing in spacings {
         let step = COURANT * spacing / speed;
         let fit = slosh(spacing, step, exact)?;
         refinement.add(spacing, fit.frequency / exact - 1.0);
-        (measured, damping, implicit) = (fit.frequency, fit.damping, 0.5 * exact * exact * step);
+        (measured, loss) = (fit.frequency, (fit.damping - 0.5 * exact * exact * step) / exact);
+        losses.add(spacing, loss);
     }
     let tau = std::f64::consts::TAU;
     Ok(vec![
         Finding::relative("frequency of mode 1, Hz", exact / tau, measured / tau, 0.02).converging(&refinement, 1.7),
         Finding::relative("speed of the wave, m/s", speed, measured * LENGTH / PI, 0.02),
-        Finding::relative("damping of the implicit solve, omega^2 dt/2, 1/s", implicit, damping, 0.3),
+        Finding::vanishing("damping beyond omega^2 dt/2 of the implicit solve, over omega", loss, 0.02).converging(&losses, 0.7),
     ])
 }
 

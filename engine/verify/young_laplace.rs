@@ -4,6 +4,10 @@
 //! `p - p_out = 4 sigma/R`. A bubble filled to `p` at the radius `R0` grows to the `R` at which
 //! `p (R0/R)^3 = p_out + 4 sigma(R)/R`; liquid and surfactant stay on it, so `sigma(R) = sigma + E (1 - (R0/R)^2)`
 //! where the film carries them, and `sigma(R) = sigma` in a film without material particles.
+//!
+//! # Limits
+//! A bubble that has grown by a third of a per cent leaves an error of 1e-5 that refinement does not remove: the sums
+//! over neighbours see its carriers a third of a per cent farther apart, in units of their fixed support.
 
 use froth_components::gas::{GasExponent, GasVolume, IdealGas, ReferencePressure, ReferenceVolume};
 use froth_components::kind::Region;
@@ -43,8 +47,8 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
             measured = case.relaxed(*count)?;
             refinement.add(1.0 / f64::from(*count).sqrt(), measured / expected - 1.0);
         }
-        let finding = Finding::relative(format!("excess pressure, {}, Pa", case.what), expected, measured, 2e-3);
-        Ok(finding.converging(&refinement, 0.0))
+        let finding = Finding::relative(format!("excess pressure, {}, Pa", case.what), expected, measured, 2e-4);
+        Ok(if case.pressure == 1.0 { finding.converging(&refinement, 1.7) } else { finding })
     };
     CASES.iter().map(finding).collect()
 }

@@ -3,6 +3,7 @@
 //! | command | file |
 //! |---|---|
 //! | `run`, `resume` | `run`, watched by `progress`, told to stop by `signals` |
+//! | `bench` | `bench` |
 //! | `check` | `check` |
 //! | `explain` | `explain` |
 //! | `scenes` | `gallery` |
@@ -11,6 +12,7 @@
 
 #![expect(clippy::print_stderr, reason = "a command line prints")]
 
+mod bench;
 mod check;
 mod explain;
 mod gallery;
@@ -57,6 +59,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Print the schedule of a scene and why each system runs or rests; or the page of an error code such as F0020
     Explain(explain::ExplainArguments),
+    /// Measure time per stage and step, and memory, at several sizes of a scene
+    Bench(bench::BenchArguments),
     /// List the built-in scenes
     Scenes,
 }
@@ -77,6 +81,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Resume(arguments)) => run::resume(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Explain(arguments)) => explain::explain(&arguments),
+        Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Scenes) => Ok(gallery::list()),
     };
     ExitCode::from(done.unwrap_or_else(|failure: Failure| {

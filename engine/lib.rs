@@ -6,6 +6,7 @@ pub mod bench;
 pub mod checkpoint;
 pub mod cli;
 pub mod errors;
+pub mod frames;
 pub mod gallery;
 pub mod method;
 pub mod picture;

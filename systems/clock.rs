@@ -1,6 +1,6 @@
 //! The length of a step: the shortest that CFL, the method and the scene ask for, such that the next frame is hit exactly.
 //!
-//! Systems of [`Stage::Clock`](crate::stage::Stage::Clock) propose limits to [`StepLimits`]; [`choose_step_length`] runs last in
+//! Systems of [`Stage::Clock`] propose limits to [`StepLimits`]; [`choose_step_length`] runs last in
 //! that stage. The time left until the horizon is split into equal steps, so no sliver is left before a frame.
 
 use bevy_ecs::resource::Resource;

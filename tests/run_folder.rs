@@ -34,13 +34,13 @@ fn checkpoints(folder: &Path) -> Vec<PathBuf> {
     files(&folder.join("checkpoints")).into_keys().map(|name| folder.join("checkpoints").join(name)).collect()
 }
 
-fn spoil(path: &Path, spoil: impl FnOnce(&mut Vec<u8>)) {
+fn spoil(path: &Path, how: impl FnOnce(&mut Vec<u8>)) {
     let mut bytes = fs::read(path).unwrap();
-    spoil(&mut bytes);
+    how(&mut bytes);
     fs::write(path, bytes).unwrap();
 }
 
-fn flip_a_bit(bytes: &mut Vec<u8>) {
+fn flip_a_bit(bytes: &mut [u8]) {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
 }
@@ -117,7 +117,7 @@ fn a_checkpoint_that_does_not_fit_ends_the_run_with_1_and_leaves_no_part_of_it()
 fn a_damaged_checkpoint_is_passed_over_for_the_one_before() {
     let parent = tempfile::tempdir().unwrap();
     let folder = stopped(&parent, "damaged");
-    spoil(&checkpoints(&folder)[1], flip_a_bit);
+    spoil(&checkpoints(&folder)[1], |bytes| flip_a_bit(bytes));
     let mut run = resume(&folder).unwrap();
     assert_eq!(run.simulation().clock().steps, 3);
     run.drive(&mut draw, &mut Silent).unwrap();
@@ -132,7 +132,7 @@ fn damaged_truncated_and_foreign_checkpoints_are_refused_by_name() {
     let parent = tempfile::tempdir().unwrap();
     let folder = stopped(&parent, "refused");
     for checkpoint in checkpoints(&folder) {
-        spoil(&checkpoint, flip_a_bit);
+        spoil(&checkpoint, |bytes| flip_a_bit(bytes));
     }
     let error = checkpoint_error(resume(&folder));
     assert!(matches!(&error, CheckpointError::Damaged { path, .. } if *path == checkpoints(&folder)[1]), "{error}");

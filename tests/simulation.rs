@@ -88,8 +88,7 @@ fn forces_act_in_a_method_of_ones_own() {
     let velocities = simulation.column::<EulerianParticle, Velocity>();
     assert!(velocities.iter().all(|velocity| (velocity.0.x - 0.2).abs() < 1e-12));
     let names: Vec<String> = simulation.explain().into_iter().map(|system| system.name).collect();
-    let wanted =
-        ["limit", "choose the step length", "pull", "pull again", "never", "fall", "check for finite values"];
+    let wanted = ["limit", "choose the step length", "pull", "pull again", "never", "fall", "check for finite values"];
     assert_eq!(names, wanted);
     assert_eq!(simulation.explain()[4].unmet, ["lagrangian particles"]);
 }

@@ -23,8 +23,8 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<u8, Failure> {
     let registry = AuthoredRegistry::built_in();
     let mut exit_code = DONE;
     for argument in &arguments.scenes {
-        let checked = scene_choice::read(argument, &registry)
-            .and_then(|scene| Ok((scene.check(available_memory())?, scene)));
+        let checked =
+            scene_choice::read(argument, &registry).and_then(|scene| Ok((scene.check(available_memory())?, scene)));
         match checked {
             Ok((estimate, scene)) => say(describe(&scene, &estimate)),
             Err(failure) => {
@@ -54,7 +54,11 @@ fn describe(scene: &Scene, estimate: &Estimate) -> String {
         ),
         format!("  memory     about {:.1} MB", 1e-6 * estimate.bytes as f64),
         format!("  time       {duration} s, {:.0} frames at {rate} per second", (duration * rate).floor() + 1.0),
-        format!("  steps      about {:.0}, the first of {:.3} ms; more where films are fast", duration / step, 1e3 * step),
+        format!(
+            "  steps      about {:.0}, the first of {:.3} ms; more where films are fast",
+            duration / step,
+            1e3 * step
+        ),
     ]
     .join("\n")
 }

@@ -85,7 +85,8 @@ impl Reporter for Bar {
     }
 
     fn end(&mut self, _: &Progress, _: &RunEnd) {
-        self.0.finish();
+        // `finish` would fill the bar of a run that was stopped.
+        self.0.abandon();
     }
 }
 

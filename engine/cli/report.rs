@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::{FAILED, WRONG_USAGE};
 use crate::bench::BenchError;
+use crate::frames::PictureFramesError;
 use crate::run::RunError;
 use crate::scene::SceneError;
 use crate::simulation::{BuildError, StepError};
@@ -19,6 +20,8 @@ pub(super) enum Failure {
     Build(#[from] BuildError),
     #[error(transparent)]
     Run(#[from] RunError),
+    #[error(transparent)]
+    Pictures(PictureFramesError),
     #[error("there is no error code `{0}`; codes look like F0020")]
     NoSuchCode(String),
     #[error("{0} threads cannot be started: {1}")]
@@ -46,6 +49,15 @@ impl From<BenchError> for Failure {
     }
 }
 
+impl From<PictureFramesError> for Failure {
+    fn from(error: PictureFramesError) -> Self {
+        match error {
+            PictureFramesError::Scene(error) => (*error).into(),
+            other => Self::Pictures(other),
+        }
+    }
+}
+
 impl Failure {
     fn build_error(&self) -> Option<&BuildError> {
         match self {
@@ -62,7 +74,7 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_) | Self::Pictures(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

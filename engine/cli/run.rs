@@ -11,9 +11,10 @@ use froth_components::quantity::Time;
 use super::progress::{self, Output};
 use super::report::Failure;
 use super::{DONE, STOPPED, say, scene_choice, signals};
+use crate::frames::PictureFrames;
 use crate::gallery::GALLERY;
 use crate::method::METHODS;
-use crate::run::{FrameSink, Manifest, NoFrames, Run, RunEnd, RunFolder, RunSettings, RunState};
+use crate::run::{Manifest, Run, RunEnd, RunFolder, RunSettings, RunState};
 use crate::simulation::{Overrides, Simulation};
 
 /// Folder of run folders that nobody named.
@@ -80,12 +81,14 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failure> {
     let settings = arguments.process.begin(arguments.until)?;
     let overrides =
         Overrides { method: arguments.method.clone(), resolution: arguments.resolution, seed: arguments.seed };
-    let simulation = scene_choice::build(&arguments.scene, Simulation::builder().overrides(overrides))?;
+    let mut simulation = scene_choice::build(&arguments.scene, Simulation::builder().overrides(overrides))?;
+    // Before the folder: a picture that cannot be drawn leaves nothing behind.
+    let frames = PictureFrames::of(&mut simulation)?;
     let folder = match &arguments.out {
         Some(path) => RunFolder::create(path),
         None => RunFolder::create_numbered(Path::new(RUNS), &scene_choice::stem(&arguments.scene)),
     }?;
-    drive(Run::begin(simulation, folder, settings)?, arguments.process.output())
+    drive(Run::begin(simulation, folder, settings)?, frames, arguments.process.output())
 }
 
 pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
@@ -97,12 +100,13 @@ pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
         return Ok(DONE);
     }
     let settings = arguments.process.begin(None)?;
-    drive(Run::resume(&arguments.folder, Simulation::builder, settings)?, output)
+    let mut run = Run::resume(&arguments.folder, Simulation::builder, settings)?;
+    let frames = PictureFrames::of(run.simulation_mut())?;
+    drive(run, frames, output)
 }
 
-fn drive(mut run: Run, output: Output) -> Result<u8, Failure> {
-    let mut frames = frame_sink(run.simulation());
-    let end = run.drive(frames.as_mut(), progress::reporter(output).as_mut())?;
+fn drive(mut run: Run, mut frames: PictureFrames, output: Output) -> Result<u8, Failure> {
+    let end = run.drive(&mut frames, progress::reporter(output).as_mut())?;
     let folder = run.folder().path().display();
     let (line, exit_code) = match end {
         RunEnd::Finished { .. } => (format!("finished: {folder}"), DONE),
@@ -112,11 +116,6 @@ fn drive(mut run: Run, output: Output) -> Result<u8, Failure> {
         say(line);
     }
     Ok(exit_code)
-}
-
-/// Who draws the frames of a scene.
-fn frame_sink(_simulation: &Simulation) -> Box<dyn FrameSink> {
-    Box::new(NoFrames)
 }
 
 impl ProcessArguments {
@@ -151,5 +150,7 @@ fn positive(text: &str) -> Result<f64, String> {
 /// A positive time: a plain number of seconds, or a number with a unit.
 fn seconds(text: &str) -> Result<f64, String> {
     let time = text.parse().or_else(|_| Time::parse(text).map(Time::si));
-    time.ok().filter(|time: &f64| time.is_finite() && *time > 0.0).ok_or_else(|| "a positive time is wanted, e.g. 0.5 or \"20 ms\"".to_owned())
+    time.ok()
+        .filter(|time: &f64| time.is_finite() && *time > 0.0)
+        .ok_or_else(|| "a positive time is wanted, e.g. 0.5 or \"20 ms\"".to_owned())
 }

@@ -157,7 +157,8 @@ impl SimulationBuilder {
             header.resolution = header.resolution.refined(factor);
         }
         header.seed = self.overrides.seed.unwrap_or(header.seed);
-        let chosen = MethodName::ALL.into_iter().find(|name| Some(name.on_command_line()) == self.overrides.method.as_deref());
+        let chosen =
+            MethodName::ALL.into_iter().find(|name| Some(name.on_command_line()) == self.overrides.method.as_deref());
         let name = chosen.unwrap_or(header.method.name());
         if let Some(choice) = (name != header.method.name()).then(|| MethodChoice::with_defaults(name)).flatten() {
             header.method = choice;

@@ -14,11 +14,38 @@ pub struct BuiltInScene {
 }
 
 /// Every built-in scene, in the order of listings. The first is what `froth` alone runs.
-pub const GALLERY: &[BuiltInScene] = &[BuiltInScene {
-    name: "giant_bubble",
-    summary: "a giant bubble wobbles back to a sphere while its liquid drains and swirls",
-    text: include_str!("../scenes/giant_bubble.ron"),
-}];
+pub const GALLERY: &[BuiltInScene] = &[
+    BuiltInScene {
+        name: "giant_bubble",
+        summary: "a giant bubble wobbles back to a sphere while its liquid drains and swirls",
+        text: include_str!("../scenes/giant_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "deforming_rectangle",
+        summary: "a vertical film, thick above thin, turns over while a push sweeps across it",
+        text: include_str!("../scenes/deforming_rectangle.ron"),
+    },
+    BuiltInScene {
+        name: "half_bubble",
+        summary: "a half bubble on a plate, warmed from below, leans in a breeze",
+        text: include_str!("../scenes/half_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "drainage",
+        summary: "a vertical film drains into Newton's fringes",
+        text: include_str!("../scenes/drainage.ron"),
+    },
+    BuiltInScene {
+        name: "equilibrium_disc",
+        summary: "an uneven disc evens out by the Marangoni effect",
+        text: include_str!("../scenes/equilibrium_disc.ron"),
+    },
+    BuiltInScene {
+        name: "resting_bubble",
+        summary: "a bubble at rest at 1 atm stays at rest",
+        text: include_str!("../scenes/resting_bubble.ron"),
+    },
+];
 
 /// The built-in scene of a name.
 #[must_use]

@@ -112,7 +112,7 @@ impl FrameSink for PictureFrames {
         let picture = self.paint(world)?;
         let mut bytes = Cursor::new(Vec::new());
         picture.write_to(&mut bytes, ImageFormat::Png)?;
-        folder.write(&frame_file(frame), bytes.get_ref())?;
+        folder.write(RunFolder::frame_file(frame), bytes.get_ref())?;
         Ok(())
     }
 
@@ -121,7 +121,7 @@ impl FrameSink for PictureFrames {
         let settings = AnimationSettings { frames_per_second: rate, ..AnimationSettings::default() };
         let mut animation = Animation::new(Cursor::new(Vec::new()), settings)?;
         for frame in 0.. {
-            let path = folder.path().join(frame_file(frame));
+            let path = folder.path().join(RunFolder::frame_file(frame));
             if !path.exists() {
                 break;
             }
@@ -130,8 +130,4 @@ impl FrameSink for PictureFrames {
         folder.write(ANIMATION, animation.finish()?.get_ref())?;
         Ok(())
     }
-}
-
-fn frame_file(frame: u64) -> String {
-    format!("frames/{frame:06}.png")
 }

@@ -12,7 +12,7 @@ pub const BYTES_PER_EULERIAN: u64 = 700;
 /// Memory of one Lagrangian particle with its share of neighbour lists, bytes.
 pub const BYTES_PER_LAGRANGIAN: u64 = 650;
 /// Rows of boundary particles along a pinned rim.
-pub const BOUNDARY_ROWS: f64 = 1.0;
+pub const BOUNDARY_ROWS: f64 = 5.0;
 /// Memory assumed where the system does not tell, bytes.
 const ASSUMED_MEMORY: u64 = 16 << 30;
 

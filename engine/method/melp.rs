@@ -56,8 +56,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
     plan.add(Stage::Clock, "limit the step by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
-    plan.add(Stage::Gather, "link the particle sets", links::link_material, liquid());
-    plan.add(Stage::Gather, "gather liquid (L2E)", gather::gather_liquid, liquid());
+    plan.add(Stage::Gather, "link the particle sets and gather liquid (L2E)", gather::gather_liquid, liquid());
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
     plan.add(Stage::Geometry, "measure concentration and thickness", measure::measure_film, liquid());
     plan.add(Stage::Geometry, "measure gas pressure", measure::measure_pressure, always());

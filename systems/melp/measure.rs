@@ -22,33 +22,19 @@ use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use super::links::{Carriers, Link, link_one};
-use crate::neighbours::kernel::Kernel;
+use super::gather::gather_scalar;
+use super::links::Carriers;
 use crate::operators::stencil::Stencil;
 use crate::rows::reduce::ordered_sum;
 use froth_components::motion::{Normal, Position};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The dual area of every carrier, m^2.
 #[must_use]
 pub fn dual_areas(carriers: Carriers) -> Vec<f64> {
-    let kernel = carriers.kernel();
-    let count = carriers.positions.len();
-    let link = |i: usize| link_one(carriers, &kernel, carriers.positions[i].0, carriers.normals[i].0, carriers.regions[i]);
-    let links: Vec<Link> = (0..count).into_par_iter().with_min_len(128).map(link).collect();
-    (0..count).into_par_iter().with_min_len(128).map(|i| dual_area(carriers, &kernel, &links, i)).collect()
-}
-
-fn dual_area(carriers: Carriers, kernel: &Kernel, links: &[Link], i: usize) -> f64 {
-    let Stencil { lists, areas, .. } = carriers.stencil;
-    let own = links[i].weight(kernel.value(0.0), DVec3::ZERO) * areas[i];
-    let near = lists.of(i).iter().map(|&j| j as usize);
-    own + near
-        .map(|j| (j, carriers.positions[i].0 - carriers.positions[j].0))
-        .map(|(j, r)| links[j].weight(kernel.value(r.length_squared()), r) * areas[j])
-        .sum::<f64>()
+    let areas = &carriers.stencil.areas;
+    gather_scalar(carriers, carriers.rows(), &mut Vec::new(), |i| areas[i])
 }
 
 /// Volume enclosed by the rows of a closed film, measured from its particles, m^3.

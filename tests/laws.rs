@@ -26,5 +26,14 @@ macro_rules! laws {
 laws! {
     operators_are_exact_for_constants_and_linear_fields_also_at_walls = "operators";
     spheres_and_ellipsoids_have_their_area_and_curvature = "curvature";
+    transfers_keep_liquid_surfactant_and_momentum = "transfers";
+    redistribution_leaves_the_surface_and_the_thickness_unchanged = "redistribution";
+    the_pressure_in_a_bubble_is_four_sigma_over_its_radius = "young_laplace";
+    a_bubble_breathes_on_the_spring_of_its_gas = "breathing";
     a_bubble_of_film_mass_rings_at_the_frequencies_of_its_shape = "shape_modes";
+    a_bubble_with_liquid_and_air_rings_slower = "elastic_shape_modes";
+    marangoni_waves_run_at_the_speed_of_their_elasticity = "marangoni_wave";
+    a_drained_film_is_exponential = "drainage";
+    an_uneven_disc_evens_out = "equilibrium_disc";
+    a_bubble_at_rest_stays_at_rest = "resting_bubble";
 }

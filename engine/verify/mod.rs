@@ -9,13 +9,22 @@
 //!
 //! `froth verify` prints the findings; `tests/laws.rs` asserts the quick ones.
 
+mod breathing;
 mod curvature;
+mod drainage;
+mod elastic_shape_modes;
+mod equilibrium_disc;
 pub mod finding;
+mod marangoni_wave;
 mod operators;
 pub mod oscillation;
+mod redistribution;
+mod resting_bubble;
 mod sampled;
 mod scene_run;
 mod shape_modes;
+mod transfers;
+mod young_laplace;
 
 use froth_components::quantity::nearest;
 use froth_systems::operators::conjugate_gradient::NotConverged;
@@ -72,10 +81,64 @@ pub const LAWS: &[Law] = &[
         measure: curvature::measure,
     },
     Law {
+        name: "transfers",
+        summary: "transfers between the particle sets keep liquid, surfactant, linear and angular momentum",
+        source: "Deng 2022, Algorithms 1 and 4; Jiang 2015",
+        measure: transfers::measure,
+    },
+    Law {
+        name: "redistribution",
+        summary: "redistribution leaves the surface and the thickness unchanged",
+        source: "Deng 2022, Algorithm 5",
+        measure: redistribution::measure,
+    },
+    Law {
+        name: "young_laplace",
+        summary: "the pressure in a bubble exceeds that outside by 4 sigma/R",
+        source: "Young 1805, Laplace 1806, two interfaces",
+        measure: young_laplace::measure,
+    },
+    Law {
+        name: "breathing",
+        summary: "a bubble breathes at omega^2 = (3 gamma p/R - 4 sigma/R^2)/(rho eta)",
+        source: "Minnaert 1933 with the inertia of the film",
+        measure: breathing::measure,
+    },
+    Law {
         name: "shape_modes",
         summary: "a bubble of film mass alone rings at omega^2 = 2 sigma (n - 1)(n + 2)/(rho eta R^2)",
         source: "Rayleigh 1879 for a film, inertia rho eta per area",
         measure: shape_modes::measure,
+    },
+    Law {
+        name: "elastic_shape_modes",
+        summary: "with liquid, real surfactant and the air's inertia it rings at the slow root of a two by two system",
+        source: "derived in its file; stiff limit: inertia rho eta (1 + 4/(n (n + 1))) + m_air",
+        measure: elastic_shape_modes::measure,
+    },
+    Law {
+        name: "marangoni_wave",
+        summary: "surfactant and liquid swing at c/(2 L) between walls, c^2 = 2 E/(rho eta)",
+        source: "Deng 2022, Eqs 13 and 14, linearised",
+        measure: marangoni_wave::measure,
+    },
+    Law {
+        name: "drainage",
+        summary: "a film at rest under gravity is eta0 exp(-rho g eta0 z/(2 E)) thick, eta0 set by the liquid",
+        source: "Deng 2022, 6.1, fig. 13; rectangle and disc (a circle stands for the hexagon)",
+        measure: drainage::measure,
+    },
+    Law {
+        name: "equilibrium_disc",
+        summary: "an uneven disc evens out at real elasticity and CFL 0.99",
+        source: "Deng 2022, 6.2, fig. 14",
+        measure: equilibrium_disc::measure,
+    },
+    Law {
+        name: "resting_bubble",
+        summary: "a bubble at rest at 1 atm, with the mass of a real film, stays at rest",
+        source: "the volume is constant, speeds decay, no limit is reached",
+        measure: resting_bubble::measure,
     },
 ];
 

@@ -24,8 +24,13 @@ pub(super) struct Sampled {
 impl Sampled {
     /// About `count` carriers on a shape.
     pub(super) fn new(shape: Shape, count: usize) -> Result<Self, NotConverged> {
+        Self::with_liquid(shape, count, 0)
+    }
+
+    /// The same, with material particles per carrier.
+    pub(super) fn with_liquid(shape: Shape, count: usize, liquid_per_carrier: usize) -> Result<Self, NotConverged> {
         let spacing = (shape.area() / count as f64).sqrt();
-        let sampling = Sampling { spacing, liquid_per_carrier: 0, reference_surfactant: 1.0 };
+        let sampling = Sampling { spacing, liquid_per_carrier, reference_surfactant: 1.0 };
         let thickness = ThicknessField::Uniform(Length::from_si(400e-9));
         let film = Film { thickness, surfactant: SurfactantField::Uniform, warmth: Ratio::from_si(0.0) };
         let perturbation = Perturbation::default();
@@ -81,7 +86,7 @@ impl Sampled {
 }
 
 /// A random number from -1 to 1.
-fn symmetric(axis: u64, i: u64) -> f64 {
+pub(super) fn symmetric(axis: u64, i: u64) -> f64 {
     2.0 * (random::bits(axis, i, 0, Use::NoiseSeed) >> 11) as f64 / (1_u64 << 53) as f64 - 1.0
 }
 

@@ -112,7 +112,8 @@ pub fn redistribute_carriers(
 }
 
 /// `q + d . grad q` on every carrier.
-fn moved_values(stencil: &Stencil, x: &[Position], n: &[Normal], moves: &[DVec3], values: &[f64]) -> Vec<f64> {
+#[must_use]
+pub fn moved_values(stencil: &Stencil, x: &[Position], n: &[Normal], moves: &[DVec3], values: &[f64]) -> Vec<f64> {
     (0..values.len())
         .into_par_iter()
         .with_min_len(256)

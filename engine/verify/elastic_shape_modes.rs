@@ -64,7 +64,8 @@ fn ring(degree: u32, count: u32, air: &str, exact: f64) -> Result<Oscillation, L
     let harmonic = Harmonic::new(degree, 0);
     let period = std::f64::consts::TAU / exact;
     let step = 0.7 / f64::from(count).sqrt() * period;
-    let samples = series(&mut simulation, step, PERIODS * period, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
+    let samples =
+        series(&mut simulation, step, PERIODS * period, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
     Ok(Oscillation::fit(&samples, exact))
 }
 

@@ -23,7 +23,11 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     }
     Ok(vec![
         Finding::vanishing("thickness shown, deviation over mean, at the end", deviation, 5e-3),
-        Finding::vanishing("the same relative to that after the first step", deviation / first.unwrap_or(f64::NAN), 0.1),
+        Finding::vanishing(
+            "the same relative to that after the first step",
+            deviation / first.unwrap_or(f64::NAN),
+            0.1,
+        ),
         Finding::vanishing("mean speed of the liquid, m/s", fastest, 0.01),
     ])
 }

@@ -41,15 +41,25 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
 fn findings(samples: &[Sample], end: f64) -> Vec<Finding> {
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(3);
     let first = samples.first().map_or(f64::NAN, |sample| sample.evolved);
-    let largest = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a });
+    let largest = |f: &dyn Fn(&Sample) -> f64| {
+        samples.iter().map(f).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    };
     let within = |from: f64, to: f64, f: &dyn Fn(&Sample) -> f64| {
         let chosen: Vec<f64> = samples.iter().filter(|s| s.time > from * end && s.time <= to * end).map(f).collect();
         chosen.iter().sum::<f64>() / chosen.len() as f64
     };
     let decay = |f: &dyn Fn(&Sample) -> f64| within(0.75, 1.0, f) / within(0.0, 0.25, f);
     vec![
-        Finding::vanishing("volume as evolved, largest relative change", largest(&|s| (s.evolved / first - 1.0).abs()), 1e-6),
-        Finding::vanishing("volume as measured, largest relative error", largest(&|s| (s.measured / exact - 1.0).abs()), 1e-3),
+        Finding::vanishing(
+            "volume as evolved, largest relative change",
+            largest(&|s| (s.evolved / first - 1.0).abs()),
+            1e-6,
+        ),
+        Finding::vanishing(
+            "volume as measured, largest relative error",
+            largest(&|s| (s.measured / exact - 1.0).abs()),
+            1e-3,
+        ),
         Finding::vanishing(
             "drift of the measured volume, second quarter to last",
             within(0.75, 1.0, &|s| s.measured) / within(0.25, 0.5, &|s| s.measured) - 1.0,

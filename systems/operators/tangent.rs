@@ -111,7 +111,10 @@ mod tests {
         let v = DVec2::new(2.0, -0.5);
         let m = plane_outer(2.0, v) + plane_outer(1.0, DVec2::Y);
         let in_space = |m: DMat2| {
-            outer(m.x_axis.x, t1, t1) + outer(m.x_axis.y, t2, t1) + outer(m.y_axis.x, t1, t2) + outer(m.y_axis.y, t2, t2)
+            outer(m.x_axis.x, t1, t1)
+                + outer(m.x_axis.y, t2, t1)
+                + outer(m.y_axis.x, t1, t2)
+                + outer(m.y_axis.y, t2, t2)
         };
         let difference = tangential_inverse(in_space(m), n) - in_space(plane_inverse(m));
         assert!(difference.to_cols_array().iter().all(|d| d.abs() < 1e-13));

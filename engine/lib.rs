@@ -2,6 +2,7 @@
 //!
 //! A program begins at [`Simulation`]; a run with its folder at [`run`].
 
+pub mod bench;
 pub mod checkpoint;
 pub mod cli;
 pub mod errors;

@@ -108,7 +108,11 @@ pub fn harmonic_degree<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u
 /// As the count, or when it is outside.
 pub fn particles_per_carrier<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
     let count = Count::or_zero(deserializer)?;
-    at_most(count, 1000, "0 to 1000 material particles per carrier are wanted, e.g. 16; 0 is a film whose liquid does not flow")
+    at_most(
+        count,
+        1000,
+        "0 to 1000 material particles per carrier are wanted, e.g. 16; 0 is a film whose liquid does not flow",
+    )
 }
 
 fn small_count<'de, De: Deserializer<'de>>(deserializer: De, largest: u32, rule: &str) -> Result<u32, De::Error> {

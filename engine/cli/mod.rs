@@ -3,6 +3,7 @@
 //! | command | file |
 //! |---|---|
 //! | `run`, `resume` | `run`, watched by `progress`, told to stop by `signals` |
+//! | `bench` | `bench` |
 //! | `check` | `check` |
 //! | `explain` | `explain` |
 //! | `verify` | `verify` |
@@ -12,6 +13,7 @@
 
 #![expect(clippy::print_stderr, reason = "a command line prints")]
 
+mod bench;
 mod check;
 mod explain;
 mod gallery;
@@ -66,6 +68,8 @@ enum Command {
     Explain(explain::ExplainArguments),
     /// Measure physical laws: expected, measured, error, tolerance, observed order
     Verify(verify::VerifyArguments),
+    /// Measure time per stage and step, and memory, at several sizes of a scene
+    Bench(bench::BenchArguments),
     /// List the built-in scenes
     Scenes,
 }
@@ -87,6 +91,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Explain(arguments)) => explain::explain(&arguments),
         Some(Command::Verify(arguments)) => verify::verify(&arguments),
+        Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Scenes) => Ok(gallery::list()),
     };
     ExitCode::from(done.unwrap_or_else(|failure: Failure| {

@@ -1,15 +1,17 @@
 //! What went wrong, on standard error: with the piece of the scene and a caret on a terminal, in one line otherwise.
 
 use std::io::{self, IsTerminal};
+use std::path::PathBuf;
 
 use miette::{Diagnostic, GraphicalReportHandler};
 use thiserror::Error;
 
 use super::{FAILED, WRONG_USAGE};
+use crate::bench::BenchError;
 use crate::frames::PictureFramesError;
 use crate::run::RunError;
 use crate::scene::SceneError;
-use crate::simulation::BuildError;
+use crate::simulation::{BuildError, StepError};
 
 /// Why a command fails.
 #[derive(Debug, Error)]
@@ -26,6 +28,10 @@ pub(super) enum Failure {
     NoSuchLaw(String, Option<&'static str>),
     #[error("{0} threads cannot be started: {1}")]
     Threads(usize, rayon::ThreadPoolBuildError),
+    #[error(transparent)]
+    Step(#[from] StepError),
+    #[error("{path} cannot be written: {error}", path = .0.display(), error = .1)]
+    Csv(PathBuf, io::Error),
     #[error("signals cannot be caught: {0}")]
     Signals(io::Error),
 }
@@ -33,6 +39,15 @@ pub(super) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::Build(error.into())
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Build(error) => Self::Build(error),
+            BenchError::Step(error) => Self::Step(error),
+        }
     }
 }
 

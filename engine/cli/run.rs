@@ -121,10 +121,7 @@ fn drive(mut run: Run, mut frames: PictureFrames, output: Output) -> Result<u8, 
 impl ProcessArguments {
     /// Starts the threads and catches signals.
     fn begin(&self, until: Option<f64>) -> Result<RunSettings, Failure> {
-        if let Some(threads) = self.threads.map(NonZeroUsize::get) {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-            pool.map_err(|error| Failure::Threads(threads, error))?;
-        }
+        start_threads(self.threads)?;
         let stop = signals::stop_flag().map_err(Failure::Signals)?;
         Ok(RunSettings { until, autosave: Duration::from_secs_f64(60.0 * self.autosave), stop })
     }
@@ -136,6 +133,13 @@ impl ProcessArguments {
             _ => Output::People,
         }
     }
+}
+
+/// Makes `threads` threads share the work of this process; all cores by default.
+pub(super) fn start_threads(threads: Option<NonZeroUsize>) -> Result<(), Failure> {
+    let Some(threads) = threads.map(NonZeroUsize::get) else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|error| Failure::Threads(threads, error))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -72,7 +72,11 @@ fn row(finding: &Finding) -> String {
     let Finding { what, expected, measured, error, tolerance, order } = finding;
     let order = order.map_or(String::new(), |order| format!("{:.2} ({})", order.observed, order.least));
     let verdict = if finding.passes() { "ok" } else { "FAIL" };
-    format!("  {what:66} {:>12}  {:>12}  {error:8.2e}  {tolerance:9.1e}  {order:>11}  {verdict}", number(*expected), number(*measured))
+    format!(
+        "  {what:66} {:>12}  {:>12}  {error:8.2e}  {tolerance:9.1e}  {order:>11}  {verdict}",
+        number(*expected),
+        number(*measured)
+    )
 }
 
 /// Six digits.

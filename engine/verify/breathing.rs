@@ -37,7 +37,8 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
             (last, finest) = (fit.damping / (0.5 * exact * exact * step), fit.frequency);
         }
         Ok([
-            Finding::relative(format!("angular frequency, {what}, rad/s"), exact, finest, 1e-3).converging(&refinement, 1.7),
+            Finding::relative(format!("angular frequency, {what}, rad/s"), exact, finest, 1e-3)
+                .converging(&refinement, 1.7),
             Finding::relative(format!("damping by the implicit gas over omega^2 dt/2, {what}"), 1.0, last, 0.02),
         ])
     };

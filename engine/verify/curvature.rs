@@ -26,8 +26,7 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let spheres = spheres(effort)?;
     let counts: &[usize] = effort.choose(&[500, 1000, 2000], &[1000, 2000, 4000, 8000]);
     let shape = Shape::Ellipsoid(Ellipsoid { centre: Place::ZERO, radii: Radii::from_si(RADII) });
-    let ellipsoids: Vec<Sampled> =
-        counts.iter().map(|count| Sampled::new(shape, *count)).collect::<Result<_, _>>()?;
+    let ellipsoids: Vec<Sampled> = counts.iter().map(|count| Sampled::new(shape, *count)).collect::<Result<_, _>>()?;
     let mut findings = film("sphere", &spheres, 4.0 * PI * RADIUS * RADIUS, |_| 2.0 / RADIUS);
     findings.extend(film("ellipsoid", &ellipsoids, ellipsoid_area(RADII), |x| ellipsoid_curvature(RADII, x)));
     Ok(findings)
@@ -51,7 +50,8 @@ fn film(name: &str, films: &[Sampled], area: f64, curvature: impl Fn(DVec3) -> f
         root_mean_square((0..film.count()).map(|i| trace(i) / exact(film, i) - 1.0))
     };
     let Some(finest) = films.last() else { return Vec::new() };
-    let refinement = |f: &dyn Fn(&Sampled) -> f64| films.iter().map(|film| (film.spacing, f(film))).collect::<Refinement>();
+    let refinement =
+        |f: &dyn Fn(&Sampled) -> f64| films.iter().map(|film| (film.spacing, f(film))).collect::<Refinement>();
     vec![
         Finding::relative(format!("{name}: area, m^2"), area, whole_area(finest), 2e-3),
         Finding::relative(

@@ -13,6 +13,10 @@
 //! In the limit of a stiff surfactant `y = 2 zeta/N`: the liquid runs from the troughs to the crests, and the inertia is
 //! `rho eta (1 + 4/N) + m_air`.
 
+use froth_components::film::Surfactant;
+use froth_components::kind::EulerianParticle;
+use froth_components::material::Liquid;
+use froth_components::motion::Position;
 use froth_systems::sampling::harmonic::Harmonic;
 use std::f64::consts::{PI, TAU};
 
@@ -20,6 +24,7 @@ use super::finding::{Finding, Refinement};
 use super::oscillation::Oscillation;
 use super::scene_run::{SceneRun, series, shape_amplitude};
 use super::{Effort, LawError};
+use crate::simulation::Simulation;
 
 const RADIUS: f64 = 0.05;
 const TENSION: f64 = 0.03;
@@ -79,8 +84,10 @@ impl Inertia {
         let (period, root) = (TAU / exact, f64::from(count).sqrt());
         let spacing = (4.0 * PI).sqrt() * RADIUS / root;
         let step = (0.7 / root * period).min(self.courant * spacing / (2.0 * TENSION / MASS).sqrt());
-        let samples =
-            series(&mut simulation, step, PERIODS * period, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
+        let [shape, crowding] = slow_part(degree, self.mass, exact);
+        let samples = series(&mut simulation, step, PERIODS * period, |sim| {
+            shape * shape_amplitude(sim, RADIUS, |x| harmonic.at(x)) + crowding * surfactant_amplitude(sim, &harmonic)
+        })?;
         Ok(Oscillation::fit(&samples, exact))
     }
 }
@@ -96,6 +103,25 @@ fn slow_frequency(degree: u32, air: f64) -> f64 {
     let d = 2.0 * ELASTICITY * big / tangential;
     let slow = (a * d - b * b) / (0.5 * (a + d) + (0.25 * (a - d).powi(2) + b * b).sqrt());
     slow.sqrt() / RADIUS
+}
+
+/// Factors of `zeta/R` and `Gamma'/Gamma0` in the amplitude of the slow mode, orthogonal to the fast one in the inertias:
+/// the start excites both.
+fn slow_part(degree: u32, air: f64, frequency: f64) -> [f64; 2] {
+    let big = f64::from(degree * (degree + 1));
+    let flow = 4.0 * ELASTICITY / (2.0 * ELASTICITY * big - (frequency * RADIUS).powi(2) * MASS);
+    let share = flow * MASS / (MASS + air);
+    [1.0 + 2.0 * share, share]
+}
+
+/// Component of `Gamma'/Gamma0` along a harmonic.
+fn surfactant_amplitude(simulation: &mut Simulation, harmonic: &Harmonic) -> f64 {
+    let rest = simulation.world().resource::<Liquid>().reference_surfactant();
+    let places = simulation.column::<EulerianParticle, Position>();
+    let surfactant = simulation.column::<EulerianParticle, Surfactant>();
+    let terms = places.iter().zip(&surfactant).map(|(x, gamma)| (harmonic.at(x.0), gamma.0 / rest - 1.0));
+    let (along, whole) = terms.fold((0.0, 0.0), |(p, q), (y, g)| (p + y * g, q + y * y));
+    along / whole
 }
 
 #[cfg(test)]

@@ -35,9 +35,13 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let mean = gathered.iter().sum::<f64>() / gathered.len() as f64;
     let noise = root_mean_square(gathered.iter().map(|eta| eta / mean - 1.0));
     Ok(vec![
-        Finding::vanishing("liquid per area as gathered, deviation over mean", noise, 0.05),
+        Finding::vanishing("liquid per area as gathered, deviation over mean", noise, 5e-3),
         Finding::vanishing("thickness shown, deviation over mean, at the end", deviation, 5e-3),
-        Finding::vanishing("the same relative to that after the first step", deviation / first.unwrap_or(f64::NAN), 0.1),
+        Finding::vanishing(
+            "the same relative to that after the first step",
+            deviation / first.unwrap_or(f64::NAN),
+            0.1,
+        ),
         Finding::vanishing("mean speed of the liquid, m/s", fastest, 0.01),
     ])
 }

@@ -42,7 +42,8 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     Ok(vec![
         Finding::relative("frequency of mode 1, Hz", exact / tau, measured / tau, 0.02).converging(&refinement, 1.7),
         Finding::relative("speed of the wave, m/s", speed, measured * LENGTH / PI, 0.02),
-        Finding::vanishing("damping beyond omega^2 dt/2 of the implicit solve, over omega", loss, 0.02).converging(&losses, 0.7),
+        Finding::vanishing("damping beyond omega^2 dt/2 of the implicit solve, over omega", loss, 0.02)
+            .converging(&losses, 0.7),
     ])
 }
 

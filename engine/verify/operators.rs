@@ -13,7 +13,10 @@
 use froth_components::authored::shape::{Disc, Place, Shape, Sphere};
 use froth_components::motion::{Normal, Position};
 use froth_components::quantity::{Direction, Length};
-use froth_systems::melp::links::{Carriers, link_one};
+use froth_systems::melp::gather::gather_scalar;
+use froth_systems::melp::links::Carriers;
+use froth_systems::melp::scatter::interpolate;
+use froth_systems::melp::tiles::Rows;
 use froth_systems::sampling::harmonic::Harmonic;
 use glam::DVec3;
 
@@ -58,7 +61,11 @@ fn exactness(walled: &Sampled) -> Vec<Finding> {
     let adjoint: f64 = rows().map(|i| u(i).dot(stencil.adjoint_gradient(positions, normals, i, q))).sum();
     vec![
         Finding::vanishing("Laplacian of a constant, at walls too", constant, 1e-12),
-        Finding::vanishing("least-squares gradient of a linear field, relative, at walls too", largest(rows().map(slope_error)), 1e-12),
+        Finding::vanishing(
+            "least-squares gradient of a linear field, relative, at walls too",
+            largest(rows().map(slope_error)),
+            1e-12,
+        ),
         Finding::vanishing("sum of the flux divergence, relative", rows().map(divergence).sum::<f64>() / size, 1e-14),
         Finding::vanishing("divergence plus adjoint of the gradient, relative", (work + adjoint) / size, 1e-14),
     ]
@@ -73,21 +80,23 @@ fn transfers(walled: &Sampled) -> Vec<Finding> {
         stencil: &walled.stencil,
         spacing: walled.spacing,
     };
-    let kernel = carriers.kernel();
-    let at = |place: DVec3, field: &dyn Fn(usize) -> f64| {
-        let link = link_one(carriers, &kernel, place, DVec3::Z, walled.regions[0]);
-        let mut sum = 0.0;
-        carriers.for_each_near(&kernel, place, DVec3::Z, walled.regions[0], |e, r, w| sum += link.weight(w, r) * field(e));
-        sum
-    };
     let between = DVec3::new(0.31, 0.17, 0.0) * walled.spacing;
-    let places = || (0..walled.count()).map(|i| (i, walled.positions()[i].0 + between));
-    let linear = |j: usize| 3.0 + SLOPE.dot(walled.positions()[j].0);
-    let inner = places().filter(|(i, _)| walled.is_inner(*i)).map(|(_, x)| at(x, &linear) - 3.0 - SLOPE.dot(x));
-    let whole = places().map(|(_, x)| at(x, &|_| 1.0) - 1.0);
+    let positions: Vec<Position> = walled.positions().iter().map(|x| Position(x.0 + between)).collect();
+    let rows = Rows { positions: &positions, normals: &walled.film.normals, regions: &walled.regions };
+    let mut links = Vec::new();
+    let _areas = gather_scalar(carriers, rows, &mut links, |_| 1.0);
+    let linear = interpolate(carriers, rows, &links, |j| 3.0 + SLOPE.dot(walled.positions()[j].0));
+    let ones = interpolate(carriers, rows, &links, |_| 1.0);
+    let inner =
+        (0..walled.count()).filter(|i| walled.is_inner(*i)).map(|i| linear[i] - 3.0 - SLOPE.dot(positions[i].0));
+    let whole = ones.iter().map(|sum| sum - 1.0);
     vec![
         Finding::vanishing("interpolation of a constant, at walls too", largest(whole), 1e-13),
-        Finding::vanishing("interpolation of a linear field, relative, inside", largest(inner) / (SLOPE.length() * RADIUS), 1e-12),
+        Finding::vanishing(
+            "interpolation of a linear field, relative, inside",
+            largest(inner) / (SLOPE.length() * RADIUS),
+            1e-12,
+        ),
     ]
 }
 
@@ -104,7 +113,8 @@ fn eigenvalues(effort: Effort) -> Result<Vec<Finding>, LawError> {
         };
         let refinement: Refinement = films.iter().map(|film| (film.spacing, value(film) - exact)).collect();
         let measured = films.last().map_or(f64::NAN, value);
-        Finding::relative(format!("eigenvalue of the Laplacian, l = {degree}"), exact, measured, 0.02).converging(&refinement, 1.9)
+        Finding::relative(format!("eigenvalue of the Laplacian, l = {degree}"), exact, measured, 0.02)
+            .converging(&refinement, 1.9)
     };
     // Degree 1 is the place itself: the weights are scaled by it, and nothing is left to converge.
     Ok([2, 3, 4].map(finding).into())
@@ -133,10 +143,17 @@ fn divergence(effort: Effort) -> Result<Vec<Finding>, LawError> {
         root_mean_square((0..film.count()).map(|i| (found(i) - exact(i)) * RADIUS * RADIUS / 12.0))
     };
     let last = |f: &dyn Fn(&Sampled) -> f64| films.last().map_or(f64::NAN, f);
-    let refinement = |f: &dyn Fn(&Sampled) -> f64| films.iter().map(|film| (film.spacing, f(film))).collect::<Refinement>();
+    let refinement =
+        |f: &dyn Fn(&Sampled) -> f64| films.iter().map(|film| (film.spacing, f(film))).collect::<Refinement>();
     Ok(vec![
-        Finding::vanishing("least-squares gradient of Y31, rms error times R", last(&gradient), effort.choose(0.04, 0.01)).converging(&refinement(&gradient), 1.9),
-        Finding::vanishing("flux divergence of grad Y31, rms error relative to its largest", last(&divergence), 0.02).converging(&refinement(&divergence), 0.0),
+        Finding::vanishing(
+            "least-squares gradient of Y31, rms error times R",
+            last(&gradient),
+            effort.choose(0.04, 0.01),
+        )
+        .converging(&refinement(&gradient), 1.9),
+        Finding::vanishing("flux divergence of grad Y31, rms error relative to its largest", last(&divergence), 0.02)
+            .converging(&refinement(&divergence), 0.0),
     ])
 }
 

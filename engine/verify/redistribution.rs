@@ -12,9 +12,11 @@
 use froth_components::authored::shape::{Ellipsoid, Place, Radii, Shape};
 use froth_components::motion::Position;
 use froth_systems::melp::carriers::{moved_values, refit};
-use froth_systems::melp::links::{Carriers, link_all};
+use froth_systems::melp::gather::gather_scalar;
+use froth_systems::melp::links::Carriers;
 use froth_systems::melp::redistribution::{Spread, lift, unevenness};
-use froth_systems::melp::scatter::{Targets, interpolate};
+use froth_systems::melp::scatter::interpolate;
+use froth_systems::melp::tiles::Rows;
 use froth_systems::operators::conjugate_gradient::{StopRule, Workspace};
 use froth_systems::sampling::harmonic::Harmonic;
 use glam::DVec3;
@@ -142,6 +144,7 @@ fn shown(film: &Sampled, concentration: &[f64]) -> Vec<f64> {
     let (positions, normals) = (&film.film.liquid_positions, &film.film.liquid_normals);
     let regions = vec![film.regions[0]; positions.len()];
     let mut links = Vec::new();
-    link_all(carriers, positions, normals, &regions, &mut links);
-    interpolate(carriers, Targets { positions, normals, regions: &regions, links: &links }, |e| concentration[e])
+    let rows = Rows { positions, normals, regions: &regions };
+    let _areas = gather_scalar(carriers, rows, &mut links, |_| 1.0);
+    interpolate(carriers, rows, &links, |e| concentration[e])
 }

@@ -60,7 +60,9 @@ fn rest(scene: &SceneRun, end: f64, step: f64) -> Result<Vec<Sample>, LawError> 
 fn findings(name: &str, samples: &[Sample], end: f64) -> Vec<Finding> {
     let exact = 4.0 / 3.0 * PI * RADIUS.powi(3);
     let first = samples.first().map_or(f64::NAN, |sample| sample.evolved);
-    let largest = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a });
+    let largest = |f: &dyn Fn(&Sample) -> f64| {
+        samples.iter().map(f).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    };
     let within = |from: f64, to: f64, f: &dyn Fn(&Sample) -> f64| {
         let chosen: Vec<f64> = samples.iter().filter(|s| s.time > from * end && s.time <= to * end).map(f).collect();
         chosen.iter().sum::<f64>() / chosen.len() as f64
@@ -68,8 +70,16 @@ fn findings(name: &str, samples: &[Sample], end: f64) -> Vec<Finding> {
     let decay = |f: &dyn Fn(&Sample) -> f64| within(0.75, 1.0, f) / within(0.0, 0.25, f);
     let of = |what: &str| format!("{name}: {what}");
     vec![
-        Finding::vanishing(of("volume as evolved, largest relative change"), largest(&|s| (s.evolved / first - 1.0).abs()), 1e-6),
-        Finding::vanishing(of("volume as measured, largest relative error"), largest(&|s| (s.measured / exact - 1.0).abs()), 1e-3),
+        Finding::vanishing(
+            of("volume as evolved, largest relative change"),
+            largest(&|s| (s.evolved / first - 1.0).abs()),
+            1e-6,
+        ),
+        Finding::vanishing(
+            of("volume as measured, largest relative error"),
+            largest(&|s| (s.measured / exact - 1.0).abs()),
+            1e-3,
+        ),
         Finding::vanishing(
             of("drift of the measured volume, second quarter to last"),
             within(0.75, 1.0, &|s| s.measured) / within(0.25, 0.5, &|s| s.measured) - 1.0,

@@ -1,8 +1,8 @@
 //! Runs a built-in scene for a law.
 
-use froth_components::motion::Position;
-use froth_components::kind::EulerianParticle;
 use froth_components::film::Area;
+use froth_components::kind::EulerianParticle;
+use froth_components::motion::Position;
 use glam::DVec3;
 
 use super::LawError;

@@ -36,7 +36,8 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
         let (exact, measured) = (exact / std::f64::consts::TAU, measured / std::f64::consts::TAU);
         // Errors fall with the square of the spacing: the bar is for 4000 carriers.
         let tolerance = tolerance * 4000.0 / f64::from(counts[counts.len() - 1]);
-        Ok(Finding::relative(format!("frequency n = {degree}, Hz"), exact, measured, tolerance).converging(&refinement, 1.7))
+        Ok(Finding::relative(format!("frequency n = {degree}, Hz"), exact, measured, tolerance)
+            .converging(&refinement, 1.7))
     };
     MODES.into_iter().map(finding).collect()
 }

@@ -14,11 +14,10 @@ use froth_components::film::{LiquidVolume, SurfactantAmount, Warmth};
 use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use froth_components::quantity::{Direction, Length};
-use froth_systems::melp::gather::{Gathered, Material, gather_all};
-use froth_systems::melp::links::{Carriers, Link, link_all};
-use froth_systems::melp::scatter::{Blend, CarrierFlow, Targets, scatter_all};
-use froth_systems::melp::settings::TRANSFER_SUPPORT;
-use froth_systems::neighbours::cells::CellList;
+use froth_systems::melp::gather::{Gathered, Material, gather_all, gather_scalar};
+use froth_systems::melp::links::{Carriers, Link};
+use froth_systems::melp::scatter::{Blend, CarrierFlow, Received, scatter_all};
+use froth_systems::melp::tiles::{Rows, Site, Tile};
 use froth_systems::operators::tangent::tangential;
 use froth_systems::sampling::harmonic::Harmonic;
 use glam::{DMat3, DVec3};
@@ -51,7 +50,6 @@ struct Pair {
     amounts: Vec<SurfactantAmount>,
     warmth: Vec<Warmth>,
     links: Vec<Link>,
-    cells: CellList,
 }
 
 /// Liquid, surfactant, momentum and angular momentum (per density).
@@ -79,12 +77,10 @@ impl Pair {
             amounts: (0..count).map(|l| SurfactantAmount(1e-10 * share(l, 12))).collect(),
             warmth: vec![Warmth::default(); count],
             links: Vec::new(),
-            cells: CellList::default(),
             carriers,
         };
         let mut links = Vec::new();
-        link_all(pair.carriers_of(), &pair.positions, &pair.normals, &pair.regions, &mut links);
-        pair.cells = CellList::build(&pair.positions, TRANSFER_SUPPORT * pair.carriers.spacing);
+        let _areas = gather_scalar(pair.carriers_of(), pair.rows(), &mut links, |_| 1.0);
         pair.links = links;
         pair
     }
@@ -99,22 +95,20 @@ impl Pair {
         }
     }
 
+    fn rows(&self) -> Rows<'_> {
+        Rows { positions: &self.positions, normals: &self.normals, regions: &self.regions }
+    }
+
     fn gather(&self) -> Vec<Gathered> {
         let material = Material {
-            positions: &self.positions,
-            normals: &self.normals,
-            regions: &self.regions,
+            rows: self.rows(),
             velocities: &self.velocities,
             gradients: &self.gradients,
             volumes: &self.volumes,
             surfactants: &self.amounts,
             warmth: &self.warmth,
-            links: &self.links,
-            cells: &self.cells,
         };
-        let mut gathered = Vec::new();
-        gather_all(self.carriers_of(), material, &mut gathered);
-        gathered
+        gather_all(self.carriers_of(), material, &mut Vec::new())
     }
 
     fn scatter(&mut self, gathered: &[Gathered]) {
@@ -125,22 +119,26 @@ impl Pair {
         let flow = CarrierFlow { velocity: &velocity, change: &still, concentration: &concentration };
         let (mut velocities, mut gradients) = (self.velocities.clone(), self.gradients.clone());
         let mut shown = vec![0.0; self.positions.len()];
-        let targets =
-            Targets { positions: &self.positions, normals: &self.normals, regions: &self.regions, links: &self.links };
         let blend = Blend { affine: true, flip: 0.0 };
-        scatter_all(self.carriers_of(), flow, targets, blend, &mut velocities, &mut gradients, &mut shown);
+        let received = Received { velocities: &mut velocities, gradients: &mut gradients, concentration: &mut shown };
+        scatter_all(self.carriers_of(), flow, self.rows(), &self.links, blend, received);
         (self.velocities, self.gradients) = (velocities, gradients);
     }
 
     fn material_totals(&self) -> Totals {
         let carriers = self.carriers_of();
         let kernel = carriers.kernel();
+        let mut tile = Tile::default();
         let mut totals = Totals::default();
         for (l, volume) in self.volumes.iter().enumerate() {
             let (x, n, u, a) = (self.positions[l].0, self.normals[l].0, self.velocities[l].0, self.gradients[l].0);
             let mut spin = DVec3::ZERO;
-            carriers.for_each_near(&kernel, x, n, self.regions[l], |_, r, w| {
-                spin += r.cross(a * tangential(r, n)) * self.links[l].weight(w, r);
+            tile.for_each(carriers, self.rows().part(l..l + 1), |tile, _| {
+                tile.find_hits(&kernel, &Site::new(x, n));
+                for hit in tile.hits() {
+                    let r = self.carriers.positions()[tile.carrier(hit.slot).0].0 - x;
+                    spin += r.cross(a * tangential(r, n)) * self.links[l].weight(hit);
+                }
             });
             totals.liquid += volume.0;
             totals.surfactant += self.amounts[l].0;
@@ -199,7 +197,11 @@ fn on_a_plane() -> Result<Vec<Finding>, LawError> {
     let angular = |a: Totals, b: Totals| (b.angular - a.angular).length() / a.angular.length();
     Ok(vec![
         Finding::vanishing("plane: liquid lost in gathering, rims too", kept.liquid / all.liquid - 1.0, 1e-13),
-        Finding::vanishing("plane: surfactant lost in gathering, rims too", kept.surfactant / all.surfactant - 1.0, 1e-13),
+        Finding::vanishing(
+            "plane: surfactant lost in gathering, rims too",
+            kept.surfactant / all.surfactant - 1.0,
+            1e-13,
+        ),
         Finding::vanishing("plane: linear momentum lost in gathering", momentum(before, between), 1e-12),
         Finding::vanishing("plane: linear momentum lost in scattering", momentum(between, after), 1e-12),
         Finding::vanishing("plane: angular momentum lost in gathering", angular(before, between), 1e-12),
@@ -227,12 +229,17 @@ fn on_spheres(effort: Effort) -> Result<Vec<Finding>, LawError> {
         counts.iter().zip(&losses).map(|(count, row)| (1.0 / (*count as f64).sqrt(), f(&row[k]))).collect()
     };
     let Some(finest) = losses.last() else { return Ok(Vec::new()) };
-    let mut findings: Vec<Finding> = flows.iter().enumerate().map(|(k, (name, _, tolerance))| {
-        let what = format!("sphere: energy of {name} lost per round trip");
-        Finding::vanishing(what, finest[k].energy, *tolerance).converging(&refinement(k, |loss| loss.energy), 1.7)
-    }).collect();
+    let mut findings: Vec<Finding> = flows
+        .iter()
+        .enumerate()
+        .map(|(k, (name, _, tolerance))| {
+            let what = format!("sphere: energy of {name} lost per round trip");
+            Finding::vanishing(what, finest[k].energy, *tolerance).converging(&refinement(k, |loss| loss.energy), 1.7)
+        })
+        .collect();
     let what = "sphere: angular momentum of rigid rotation lost per round trip";
-    findings.push(Finding::vanishing(what, finest[0].angular, 1e-4).converging(&refinement(0, |loss| loss.angular), 1.7));
+    findings
+        .push(Finding::vanishing(what, finest[0].angular, 1e-4).converging(&refinement(0, |loss| loss.angular), 1.7));
     Ok(findings)
 }
 
@@ -254,7 +261,10 @@ fn round_trips(pair: &mut Pair, flow: &dyn Fn(DVec3) -> DVec3) -> Loss {
     }
     let after = pair.material_totals();
     let per_trip = |ratio: f64| -ratio.ln() / f64::from(TRIPS);
-    Loss { energy: per_trip(after.energy / before.energy), angular: per_trip(after.angular.length() / before.angular.length()) }
+    Loss {
+        energy: per_trip(after.energy / before.energy),
+        angular: per_trip(after.angular.length() / before.angular.length()),
+    }
 }
 
 impl Pair {

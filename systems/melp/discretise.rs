@@ -5,17 +5,17 @@
 //! so that a uniform film starts uniform to the last per mille of sampling noise.
 
 use super::carriers::refit;
-use super::gather::{Material, gather_scalar};
-use super::links::{Carriers, link_all};
+use super::gather::gather_scalar;
+use super::links::Carriers;
 use super::material::{MovingMaterial, advance_all};
 use super::measure::{dual_areas, enclosed_volume};
 use super::redistribution::{EVEN_ENOUGH, Spread, lift, unevenness};
-use super::scatter::{Targets, interpolate};
-use super::settings::TRANSFER_SUPPORT;
-use crate::neighbours::cells::CellList;
+use super::scatter::interpolate;
+use super::tiles::Rows;
 use crate::operators::conjugate_gradient::{NotConverged, StopRule, Workspace};
 use crate::operators::stencil::{Points, Stencil};
 use crate::operators::tangent::tangential;
+use crate::rows::morton::morton_code;
 use crate::sampling::field::Extent;
 use crate::sampling::surface::{FilmPoint, Perturbation, Surface};
 use froth_components::authored::film::Film;
@@ -26,6 +26,7 @@ use froth_components::identity::{InRegion, RegionId};
 use froth_components::lamella::Rim;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Most redistribution passes before the start.
 const SPREADING_PASSES: usize = 60;
@@ -84,6 +85,8 @@ pub struct DiscreteFilm {
     pub rim: Option<Rim>,
     /// Size, m.
     pub size: f64,
+    /// Centre of the shape, m.
+    pub centre: DVec3,
     /// Enclosed volume of a closed film, m^3.
     pub volume: f64,
     /// Mean of `2 kappa` over the film per N/m of interface tension, 1/m: its excess pressure at rest.
@@ -110,16 +113,21 @@ impl DiscreteFilm {
         let surface = Surface::new(authored.shape, authored.perturbation);
         let count = (authored.shape.area() / sampling.spacing.powi(2)).round() as usize;
         let region = InRegion(region);
-        let mut film = Self { rim: surface.rim(), size: authored.shape.size(), ..Self::default() };
+        let mut film = Self {
+            rim: surface.rim(),
+            size: authored.shape.size(),
+            centre: authored.shape.centre(),
+            ..Self::default()
+        };
         film.wall = surface.wall(sampling.spacing).into_iter().map(Position).collect();
-        film.place_carriers(&surface.points(count, true), region, sampling.spacing)?;
+        film.place_carriers(&in_morton_order(surface.points(count, true), sampling.spacing), region, sampling.spacing)?;
         let stencil = film.stencil(region, sampling.spacing);
         film.measure(&stencil);
         film.set_carrier_fields(authored, sampling);
         if sampling.liquid_per_carrier == 0 {
             return Ok(film);
         }
-        let liquid = surface.points(count * sampling.liquid_per_carrier, false);
+        let liquid = in_morton_order(surface.points(count * sampling.liquid_per_carrier, false), sampling.spacing);
         film.place_liquid(&liquid, authored, region, sampling, &stencil);
         Ok(film)
     }
@@ -165,17 +173,18 @@ impl DiscreteFilm {
     }
 
     fn measure(&mut self, stencil: &Stencil) {
-        let area: f64 = stencil.areas.iter().sum();
+        // Rows next to a rim see the film on one side only.
+        let inner = || (0..stencil.len()).filter(|i| stencil.wall_lists.of(*i).is_empty());
+        let area: f64 = inner().map(|i| stencil.areas[i]).sum();
         let pull = |i: usize| stencil.weighted_offsets(&self.positions, i).map(|(_, w, d)| d * w).sum::<DVec3>();
-        let curvature: f64 = (0..stencil.len()).map(|i| -pull(i).dot(self.normals[i].0)).sum();
+        let curvature: f64 = inner().map(|i| -pull(i).dot(self.normals[i].0)).sum();
         self.twice_curvature = 2.0 * curvature / area;
-        self.volume = enclosed_volume(&self.positions, &self.normals, &stencil.areas, 0..stencil.len());
+        self.volume = enclosed_volume(&self.positions, &self.normals, &stencil.areas, 0..stencil.len(), self.centre);
     }
 
     fn set_carrier_fields(&mut self, authored: &AuthoredFilm, sampling: Sampling) {
         let places: Vec<DVec3> = self.positions.iter().map(|p| p.0).collect();
-        let extent =
-            Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
+        let extent = Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
         self.carrier_thickness = extent.thickness(&authored.film.thickness);
         self.concentration = extent.concentration(&authored.film, &self.carrier_thickness);
         self.concentration.iter_mut().for_each(|gamma| *gamma *= sampling.reference_surfactant);
@@ -213,33 +222,17 @@ impl DiscreteFilm {
         };
         let rim = self.rim;
         advance_all(moving, carriers, &self.shapes, 0.0, |_| rim);
-        let mut links = Vec::new();
-        link_all(carriers, &positions, &normals, &liquid_regions, &mut links);
-        let cells = CellList::build(&positions, TRANSFER_SUPPORT * sampling.spacing);
-        let material = Material {
-            positions: &positions,
-            normals: &normals,
-            regions: &liquid_regions,
-            velocities: &[],
-            gradients: &[],
-            volumes: &[],
-            surfactants: &[],
-            warmth: &[],
-            links: &links,
-            cells: &cells,
-        };
-        let targets = Targets { positions: &positions, normals: &normals, regions: &liquid_regions, links: &links };
-        let areas = fair_areas(carriers, material, targets);
+        let rows = Rows { positions: &positions, normals: &normals, regions: &liquid_regions };
+        let areas = fair_areas(carriers, rows);
         let places: Vec<DVec3> = positions.iter().map(|p| p.0).collect();
-        let extent =
-            Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
+        let extent = Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
         self.thickness = extent.thickness(&authored.film.thickness);
         let concentration = extent.concentration(&authored.film, &self.thickness);
         let gamma = |l: usize| sampling.reference_surfactant * concentration[l];
         self.volumes = self.thickness.iter().zip(&areas).map(|(eta, a)| LiquidVolume(eta * a)).collect();
         self.amounts = areas.iter().enumerate().map(|(l, a)| SurfactantAmount(a * gamma(l))).collect();
         let duals = dual_areas(carriers);
-        let gathered = gather_scalar(carriers, material, |l| areas[l] * gamma(l));
+        let gathered = gather_scalar(carriers, rows, &mut Vec::new(), |l| areas[l] * gamma(l));
         self.concentration = gathered.iter().zip(&duals).map(|(s, a)| s / a).collect();
         self.liquid_velocities = initial_flow(&extent, &normals, authored);
         self.liquid_positions = positions;
@@ -247,14 +240,24 @@ impl DiscreteFilm {
     }
 }
 
+/// The points as rows are kept: near ones mostly near each other.
+fn in_morton_order(points: Vec<FilmPoint>, spacing: f64) -> Vec<FilmPoint> {
+    let origin = points.iter().fold(DVec3::INFINITY, |low, p| low.min(p.position));
+    let code = |i: &usize| (morton_code(points[*i].position, origin, spacing), *i);
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.par_sort_by_cached_key(code);
+    order.into_iter().map(|i| points[i]).collect()
+}
+
 /// Areas of the material particles which, gathered, give the carriers' dual areas.
-fn fair_areas(carriers: Carriers, material: Material, targets: Targets) -> Vec<f64> {
+fn fair_areas(carriers: Carriers, rows: Rows) -> Vec<f64> {
     let duals = dual_areas(carriers);
     let whole: f64 = duals.iter().sum();
-    let mut areas = vec![whole / targets.positions.len() as f64; targets.positions.len()];
+    let mut areas = vec![whole / rows.positions.len() as f64; rows.positions.len()];
+    let mut links = Vec::new();
     for _ in 0..AREA_ITERATIONS {
-        let gathered = gather_scalar(carriers, material, |l| areas[l]);
-        let ratio = interpolate(carriers, targets, |e| duals[e] / gathered[e]);
+        let gathered = gather_scalar(carriers, rows, &mut links, |l| areas[l]);
+        let ratio = interpolate(carriers, rows, &links, |e| duals[e] / gathered[e]);
         areas.iter_mut().zip(&ratio).for_each(|(a, r)| *a *= r);
     }
     areas

@@ -11,20 +11,20 @@
 //! (`is_one_sided`): only constants pass exactly there. Extrapolated linear fields, passed to and fro, grow by a tenth per
 //! step.
 
-use super::state::{FilmStencil, Transfers};
+use super::settings::TRANSFER_SUPPORT;
+use super::state::FilmStencil;
+use super::tiles::{Hit, Rows};
+use crate::neighbours::kernel::Kernel;
+use crate::operators::stencil::{Points, Stencil};
+use crate::operators::tangent::{plane_inverse, plane_outer};
 use crate::rows::columns;
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
-use froth_components::kind::{BoundaryParticle, EulerianParticle, LagrangianParticle};
-use froth_components::lamella::Lamellae;
-use super::settings::TRANSFER_SUPPORT;
-use crate::neighbours::kernel::Kernel;
-use crate::operators::stencil::{Points, SAME_SHEET, Stencil};
-use crate::operators::tangent::{outer, tangential, tangential_inverse};
 use froth_components::identity::InRegion;
+use froth_components::kind::{BoundaryParticle, EulerianParticle};
+use froth_components::lamella::Lamellae;
 use froth_components::motion::{Normal, Position};
-use glam::{DMat3, DVec3};
-use rayon::prelude::*;
+use glam::{DMat2, DVec2};
 
 /// The carriers as a target of transfers.
 #[derive(Clone, Copy)]
@@ -48,24 +48,10 @@ impl Carriers<'_> {
         Kernel::new(TRANSFER_SUPPORT * self.spacing)
     }
 
-    /// Calls `visit(row, offset to the carrier, kernel value)` for every carrier of the same sheet in reach.
-    #[inline]
-    pub fn for_each_near(
-        &self,
-        kernel: &Kernel,
-        place: DVec3,
-        normal: DVec3,
-        region: InRegion,
-        mut visit: impl FnMut(usize, DVec3, f64),
-    ) {
-        let reach = kernel.support * kernel.support;
-        self.stencil.cells.for_each_near(place, |row| {
-            let r = self.positions[row].0 - place;
-            let distance = r.length_squared();
-            if distance < reach && self.regions[row] == region && self.normals[row].0.dot(normal) > SAME_SHEET {
-                visit(row, r, kernel.value(distance));
-            }
-        });
+    /// The carriers as rows that look for carriers.
+    #[must_use]
+    pub fn rows(&self) -> Rows<'_> {
+        Rows { positions: self.positions, normals: self.normals, regions: self.regions }
     }
 }
 
@@ -74,63 +60,40 @@ impl Carriers<'_> {
 pub struct Link {
     /// `s`: constant part, m^2. Zero if no carrier is in reach.
     pub constant: f64,
-    /// `b`: linear part, m.
-    pub linear: DVec3,
+    /// `b`: linear part, m, in the coordinates of the particle's [`Site`](super::tiles::Site).
+    pub linear: DVec2,
     /// Whether all carriers lie to one side, beyond a rim: a linear field could only be extrapolated.
     pub is_one_sided: bool,
 }
 
 impl Link {
-    /// The weight of a carrier at `offset`, given the kernel's value there.
+    /// The link of a particle to the carriers in its reach.
+    #[must_use]
+    pub fn to(hits: &[Hit]) -> Self {
+        let (mut sum, mut first, mut second) = (0.0, DVec2::ZERO, DMat2::ZERO);
+        for Hit { kernel, along, .. } in hits {
+            sum += kernel;
+            first += along * kernel;
+            second += plane_outer(*kernel, *along);
+        }
+        if sum <= 0.0 {
+            return Self::default();
+        }
+        let mean = first / sum;
+        let slope = -(plane_inverse(second - plane_outer(sum, mean)) * first);
+        let lowest = hits.iter().map(|hit| 1.0 + slope.dot(hit.along - mean)).fold(f64::INFINITY, f64::min);
+        if lowest < 0.0 {
+            return Self { constant: 1.0 / sum, linear: DVec2::ZERO, is_one_sided: true };
+        }
+        Self { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum, is_one_sided: false }
+    }
+
+    /// The weight of a carrier in reach.
     #[must_use]
     #[inline]
-    pub fn weight(&self, kernel_value: f64, offset: DVec3) -> f64 {
-        kernel_value * (self.constant + self.linear.dot(offset))
+    pub fn weight(&self, hit: &Hit) -> f64 {
+        hit.kernel * (self.constant + self.linear.dot(hit.along))
     }
-}
-
-/// The links of all material particles.
-pub fn link_all(
-    carriers: Carriers,
-    positions: &[Position],
-    normals: &[Normal],
-    regions: &[InRegion],
-    links: &mut Vec<Link>,
-) {
-    let kernel = carriers.kernel();
-    links.resize(positions.len(), Link::default());
-    links.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, link)| {
-        *link = link_one(carriers, &kernel, positions[i].0, normals[i].0, regions[i]);
-    });
-}
-
-/// The link of one particle.
-#[must_use]
-pub fn link_one(carriers: Carriers, kernel: &Kernel, place: DVec3, normal: DVec3, region: InRegion) -> Link {
-    let (mut sum, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
-    let mut nearby = [(DVec3::ZERO, 0.0); 64];
-    let mut count = 0;
-    carriers.for_each_near(kernel, place, normal, region, |_, r, w| {
-        let r = tangential(r, normal);
-        sum += w;
-        first += r * w;
-        second += outer(w, r, r);
-        if count < nearby.len() {
-            nearby[count] = (r, w);
-            count += 1;
-        }
-    });
-    if sum <= 0.0 {
-        return Link::default();
-    }
-    let mean = first / sum;
-    let spread = second - outer(sum, mean, mean);
-    let slope = -(tangential_inverse(spread, normal) * first);
-    let lowest = nearby[..count].iter().map(|(r, _)| 1.0 + slope.dot(*r - mean)).fold(f64::INFINITY, f64::min);
-    if lowest < 0.0 {
-        return Link { constant: 1.0 / sum, linear: DVec3::ZERO, is_one_sided: true };
-    }
-    Link { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum, is_one_sided: false }
 }
 
 /// Builds the stencil of the carriers where they stand.
@@ -144,20 +107,4 @@ pub fn build_stencil(
     let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
     let spacing = lamellae.spacing;
     stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
-}
-
-/// Links the material particles to the carriers around them.
-pub fn link_material(
-    carriers: Query<(&Position, &Normal, &InRegion), With<EulerianParticle>>,
-    material: Query<(&Position, &Normal, &InRegion), With<LagrangianParticle>>,
-    lamellae: Res<Lamellae>,
-    stencil: Res<FilmStencil>,
-    mut transfers: ResMut<Transfers>,
-) {
-    let (positions, normals, regions) = columns(&carriers);
-    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
-    let (positions, normals, regions) = columns(&material);
-    let Transfers { links, cells, .. } = &mut *transfers;
-    cells.rebuild(positions, TRANSFER_SUPPORT * lamellae.spacing);
-    link_all(carriers, positions, normals, regions, links);
 }

@@ -20,7 +20,10 @@ use super::normal_motion::NormalMotion;
 use super::settings::Melp;
 use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use crate::observe::{Fault, Faults, Observables};
+use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
+use crate::operators::stencil::Stencil;
 use crate::rows::columns_mut;
+use crate::rows::reduce::ordered_sum;
 use crate::stage::Stage;
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
@@ -29,9 +32,6 @@ use froth_components::film::{MeanCurvature, SurfaceTension, Surfactant, Thicknes
 use froth_components::kind::EulerianParticle;
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
-use crate::operators::stencil::Stencil;
-use crate::rows::reduce::ordered_sum;
 use froth_components::motion::{Normal, Position};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -82,9 +82,8 @@ impl MarangoniProblem<'_> {
             .with_min_len(256)
             .map(|i| reaction[i] + stencil.pairs(i).map(|(j, w)| link(i, j, w)).sum::<f64>())
             .collect();
-        let row = |x: &[f64], i: usize| {
-            diagonal[i] * x[i] - stencil.pairs(i).map(|(j, w)| link(i, j, w) * x[j]).sum::<f64>()
-        };
+        let row =
+            |x: &[f64], i: usize| diagonal[i] * x[i] - stencil.pairs(i).map(|(j, w)| link(i, j, w) * x[j]).sum::<f64>();
         for film in films {
             set_constant_mode(film.clone(), &reaction, &b, concentration);
         }
@@ -146,9 +145,8 @@ pub fn solve_marangoni(
     let surfactant = surfactant.bypass_change_detection();
     let tension = tension.bypass_change_detection();
     let step = clock.step_length;
-    let stretching: Vec<f64> = (0..positions.len())
-        .map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step)
-        .collect();
+    let stretching: Vec<f64> =
+        (0..positions.len()).map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step).collect();
     let problem = MarangoniProblem {
         stencil: &stencil.0,
         positions,

@@ -8,21 +8,21 @@
 //! Deng 2022, Algorithm 7, §4.8 (moving least squares). DEVIATION: blended quadratics are smooth between particles and
 //! need no solve per particle.
 
+use super::links::Carriers;
 use super::state::FilmStencil;
+use super::tiles::{PIECE, Rows, Tile};
 use crate::observe::{Fault, Faults};
+use crate::operators::quadratic::height_above;
+use crate::operators::tangent::{MinimalRotation, tangential};
 use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
-use froth_components::kind::{EulerianParticle, LagrangianParticle};
-use froth_components::lamella::Lamellae;
-use super::links::Carriers;
-use crate::neighbours::kernel::Kernel;
-use crate::operators::quadratic::height_above;
-use crate::operators::tangent::{MinimalRotation, tangential};
 use froth_components::film::ShapeOperator;
 use froth_components::identity::InRegion;
+use froth_components::kind::{EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
 use froth_components::lamella::Rim;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use glam::DVec3;
@@ -60,57 +60,91 @@ pub fn advance_all(
     step: f64,
     rim: impl Fn(InRegion) -> Option<Rim> + Sync,
 ) -> usize {
-    let kernel = carriers.kernel();
     let MovingMaterial { positions, normals, velocities, gradients, regions } = material;
-    let moving = positions.par_iter_mut().zip(normals).zip(velocities).zip(gradients).zip(regions);
-    moving
-        .with_min_len(256)
-        .map(|((((position, normal), velocity), gradient), region)| {
-            let place = drifted(position.0, velocity.0, gradient.0, step);
-            let rim = rim(*region);
-            let Some((place, new_normal)) = project(carriers, &kernel, shapes, confined(rim, place), normal.0, *region)
-            else {
-                return 1;
-            };
-            let turn = MinimalRotation::between(normal.0, new_normal);
-            velocity.0 = tangential(turn.apply(velocity.0), new_normal);
-            let rotation = turn.matrix();
-            gradient.0 = rotation * gradient.0 * rotation.transpose();
-            position.0 = confined(rim, place);
-            normal.0 = new_normal;
-            0
-        })
-        .sum()
+    let places = positions.par_chunks_mut(PIECE).zip(normals.par_chunks_mut(PIECE));
+    let flow = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE));
+    let pieces = places.zip(flow).zip(regions.par_chunks(PIECE));
+    let advance = |projector: &mut Projector, (((positions, normals), (velocities, gradients)), regions)| {
+        let piece = MovingMaterial { positions, normals, velocities, gradients, regions };
+        projector.advance(piece, carriers, shapes, step, &rim)
+    };
+    pieces.map_init(Projector::default, advance).sum()
 }
 
 fn confined(rim: Option<Rim>, place: DVec3) -> DVec3 {
     rim.map_or(place, |rim| rim.confine(place))
 }
 
-/// The point of the film nearest to `place` along the blended normal, and that normal; `None` if no carrier is in
-/// reach.
-#[must_use]
-pub fn project(
-    carriers: Carriers,
-    kernel: &Kernel,
-    shapes: &[ShapeOperator],
-    place: DVec3,
-    normal: DVec3,
-    region: InRegion,
-) -> Option<(DVec3, DVec3)> {
-    let (mut place, mut normal) = (place, normal);
-    for _ in 0..PROJECTIONS {
-        let (mut sum, mut height, mut direction) = (0.0, 0.0, DVec3::ZERO);
-        carriers.for_each_near(kernel, place, normal, region, |e, r, w| {
-            let (h, d) = height_above(-r, carriers.normals[e].0, &shapes[e].0);
-            sum += w;
-            height += w * h;
-            direction += d * w;
-        });
-        normal = direction.try_normalize()?;
-        place -= normal * (height / sum);
+/// Work space to move and project one piece of rows after another.
+#[derive(Default)]
+struct Projector {
+    tile: Tile,
+    places: Vec<Position>,
+    normals: Vec<Normal>,
+}
+
+impl Projector {
+    /// Moves one piece of rows; how many found no carrier in reach. Those stay.
+    fn advance(
+        &mut self,
+        material: MovingMaterial,
+        carriers: Carriers,
+        shapes: &[ShapeOperator],
+        step: f64,
+        rim: impl Fn(InRegion) -> Option<Rim>,
+    ) -> usize {
+        let MovingMaterial { positions, normals, velocities, gradients, regions } = material;
+        let moved =
+            |l: usize| confined(rim(regions[l]), drifted(positions[l].0, velocities[l].0, gradients[l].0, step));
+        self.places.clear();
+        self.places.extend((0..positions.len()).map(|l| Position(moved(l))));
+        self.normals.clear();
+        self.normals.extend_from_slice(normals);
+        for _ in 0..PROJECTIONS {
+            self.project(carriers, shapes, regions);
+        }
+        let mut lost = 0;
+        for l in 0..positions.len() {
+            let (before, after) = (normals[l].0, self.normals[l].0);
+            if after == DVec3::ZERO {
+                lost += 1;
+                continue;
+            }
+            let turn = MinimalRotation::between(before, after);
+            velocities[l].0 = tangential(turn.apply(velocities[l].0), after);
+            let rotation = turn.matrix();
+            gradients[l].0 = rotation * gradients[l].0 * rotation.transpose();
+            positions[l].0 = confined(rim(regions[l]), self.places[l].0);
+            normals[l].0 = after;
+        }
+        lost
     }
-    Some((place, normal))
+
+    /// Moves every row once along the blended normal onto the blended film; the normal of a row that finds no carrier
+    /// becomes zero, and it finds none from then on.
+    fn project(&mut self, carriers: Carriers, shapes: &[ShapeOperator], regions: &[InRegion]) {
+        let kernel = carriers.kernel();
+        let mut projected = Vec::with_capacity(regions.len());
+        let rows = Rows { positions: &self.places, normals: &self.normals, regions };
+        self.tile.for_each(carriers, rows, |tile, range| {
+            for l in range {
+                let (place, normal) = (rows.positions[l].0, rows.normals[l].0);
+                let (mut sum, mut height, mut direction) = (0.0, 0.0, DVec3::ZERO);
+                tile.for_each_near(&kernel, place, normal, |e, r, w| {
+                    let (h, d) = height_above(-r, carriers.normals[e].0, &shapes[e].0);
+                    sum += w;
+                    height += w * h;
+                    direction += d * w;
+                });
+                let normal = direction.normalize_or_zero();
+                let step = if normal == DVec3::ZERO { 0.0 } else { height / sum };
+                projected.push((Position(place - normal * step), Normal(normal)));
+            }
+        });
+        for (l, (place, normal)) in projected.into_iter().enumerate() {
+            (self.places[l], self.normals[l]) = (place, normal);
+        }
+    }
 }
 
 /// Moves the material particles and projects them onto the film.

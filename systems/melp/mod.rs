@@ -3,7 +3,7 @@
 //! | stage | file | paper |
 //! |---|---|---|
 //! | step length | [`step_length`] | §6.3 (CFL) |
-//! | L2E transfer | [`gather`], weights in [`links`] | Algorithm 1, Eqs 6, 7 |
+//! | L2E transfer | [`gather`], weights in [`links`], neighbours in [`tiles`] | Algorithm 1, Eqs 6, 7 |
 //! | thickness, pressure | [`measure`] | Algorithm 2, Eqs 8, 9, 11 |
 //! | normal dynamics | [`normal_motion`] | Algorithm 3, Eq. 12 |
 //! | Marangoni solve | [`marangoni`], [`inertia`] | Algorithm 3, Eqs 14, 15 |
@@ -29,3 +29,4 @@ pub mod settings;
 pub mod sorting;
 pub mod state;
 pub mod step_length;
+pub mod tiles;

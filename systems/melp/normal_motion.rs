@@ -27,20 +27,20 @@
 
 use super::state::FilmStencil;
 use crate::clock::StepLimits;
+use crate::operators::stencil::Stencil;
+use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
 use froth_components::film::{MeanCurvature, ShapeOperator, SurfaceTension, Thickness};
+use froth_components::gas::IdealGas;
 use froth_components::gas::{GasExponent, GasVolume, ReferencePressure, ReferenceVolume};
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::{Atmosphere, Liquid};
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, NormalSpeed, Velocity};
-use crate::operators::stencil::Stencil;
-use crate::rows::reduce::{ordered_max, ordered_sum};
-use froth_components::gas::IdealGas;
 use froth_components::motion::{Normal, Position};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -133,17 +133,19 @@ impl NormalForces<'_> {
         if squared_speed > 0.0 { SUBSTEP * self.spacing / squared_speed.sqrt() } else { f64::INFINITY }
     }
 
-    /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for an open film.
+    /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for a film that
+    /// encloses none; `is_free`: no rim holds it, so forces within it balance.
     pub fn advance(
         &self,
         rows: Range<usize>,
         step: f64,
         speeds: &mut [f64],
         gas: Option<&mut EnclosedGas>,
+        is_free: bool,
         motion: &mut NormalMotion,
     ) {
         let count = (step / self.longest_substep(rows.clone())).ceil().clamp(1.0, 1e6) as u32;
-        let film = FrozenFilm::new(self, rows.clone(), step / f64::from(count), gas.is_some());
+        let film = FrozenFilm::new(self, rows.clone(), step / f64::from(count), is_free);
         let mut speeds = FilmState {
             speed: &mut speeds[rows.clone()],
             displacement: &mut motion.displacement[rows.clone()],
@@ -261,7 +263,8 @@ impl<'a> FrozenFilm<'a> {
             state.speed[k] += self.forces.normals[start + k].0.dot(shift);
             let move_by = d * state.speed[k];
             // The flux through the middle of the move: exact to second order in the displacement.
-            gained += (area + 0.5 * self.forces.stencil.areas[start + k] * self.forces.curvature[start + k] * move_by) * move_by;
+            gained += (area + 0.5 * self.forces.stencil.areas[start + k] * self.forces.curvature[start + k] * move_by)
+                * move_by;
             state.displacement[k] += move_by;
             state.kinetic[k] += 0.5 * state.speed[k] * state.speed[k];
         }
@@ -312,14 +315,19 @@ impl NormalForces<'_> {
             .weighted_offsets(self.positions, i)
             .map(|(j, w, d)| w * (self.tension[i] + self.tension[j]) * d.dot(n))
             .sum();
-        let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, d)| 2.0 * self.tension[i] * w * d.dot(n)).sum();
+        let rim: f64 = self
+            .stencil
+            .wall_pairs(self.positions, self.wall, i)
+            .map(|(w, d)| 2.0 * self.tension[i] * w * d.dot(n))
+            .sum();
         film + rim
     }
 
     /// How the tension on carrier `i` changes with its own displacement, N/m.
     fn diagonal(&self, i: usize) -> f64 {
         let film: f64 = self.stencil.pairs(i).map(|(j, w)| w * (self.tension[i] + self.tension[j])).sum();
-        let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
+        let rim: f64 =
+            self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
         4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - STIFFENING * (film + rim)
     }
 }
@@ -393,8 +401,16 @@ pub fn advance_normal_motion(
             reference_volume: reference_volume.0,
             exponent: exponent.0,
         };
-        let mut gas = film.rim.is_none().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
-        forces.advance(film.carriers.clone(), clock.step_length, &mut state, gas.as_mut(), &mut motion);
+        let mut gas =
+            film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
+        forces.advance(
+            film.carriers.clone(),
+            clock.step_length,
+            &mut state,
+            gas.as_mut(),
+            film.rim.is_none(),
+            &mut motion,
+        );
         if let Some(gas) = gas {
             volume.0 = gas.volume;
         }

@@ -111,8 +111,11 @@ impl Spread<'_> {
             let mean = ordered_sum(film.len(), 0.0, |k| b[start + k]) / film.len() as f64;
             b[film.clone()].iter_mut().for_each(|v| *v -= mean);
         }
-        let diagonal: Vec<f64> =
-            (0..stencil.len()).into_par_iter().with_min_len(256).map(|i| stencil.pairs(i).map(|(_, w)| w).sum()).collect();
+        let diagonal: Vec<f64> = (0..stencil.len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|i| stencil.pairs(i).map(|(_, w)| w).sum())
+            .collect();
         let row = |x: &[f64], i: usize| diagonal[i] * x[i] - stencil.pairs(i).map(|(j, w)| w * x[j]).sum::<f64>();
         let mut potential = vec![0.0; stencil.len()];
         let solve = conjugate_gradient::solve(row, &diagonal, &b, &mut potential, stop, true, work)?;
@@ -121,7 +124,8 @@ impl Spread<'_> {
 
     fn fick(&self, kernel: &Kernel, i: usize) -> DVec3 {
         let x = self.positions[i].0;
-        let film = self.stencil.lists.of(i).iter().map(|&j| (self.stencil.areas[j as usize], self.positions[j as usize].0));
+        let film =
+            self.stencil.lists.of(i).iter().map(|&j| (self.stencil.areas[j as usize], self.positions[j as usize].0));
         let wall_area = self.spacing * self.spacing;
         let wall = self.stencil.wall_lists.of(i).iter().map(|&j| (wall_area, self.wall[j as usize].0));
         let push: DVec3 = film

@@ -8,21 +8,21 @@
 //! # Source
 //! Deng 2022, Algorithm 4, Eqs 16 to 18 (APIC: Jiang 2015).
 
+use super::links::{Carriers, Link};
 use super::settings::Melp;
 use super::state::{FilmStencil, TangentialFlow, Transfers};
+use super::tiles::{PIECE, Rows, Site, Tile};
+use crate::operators::tangent::{nearly_rotated, outer, plane_inverse, plane_outer, tangential};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res};
 use froth_components::film::{LiquidVolume, Surfactant, SurfactantAmount, Thickness};
+use froth_components::identity::InRegion;
 use froth_components::kind::{EulerianParticle, LagrangianParticle};
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use super::links::{Carriers, Link};
-use crate::neighbours::kernel::Kernel;
-use crate::operators::tangent::{MinimalRotation, outer, tangential, tangential_inverse};
-use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// What is scattered, per carrier.
@@ -45,42 +45,46 @@ pub struct Blend {
     pub flip: f64,
 }
 
-/// Where the material particles are.
-#[derive(Clone, Copy)]
-pub struct Targets<'a> {
-    /// Places.
-    pub positions: &'a [Position],
-    /// Unit normals.
-    pub normals: &'a [Normal],
-    /// Regions.
-    pub regions: &'a [InRegion],
-    /// Weights toward the carriers.
-    pub links: &'a [Link],
+/// What every material particle receives.
+pub struct Received<'a> {
+    /// Tangential velocities.
+    pub velocities: &'a mut [Velocity],
+    /// Velocity gradients.
+    pub gradients: &'a mut [VelocityGradient],
+    /// Interpolated concentration, mol/m^2.
+    pub concentration: &'a mut [f64],
 }
 
-/// Scatters to every material particle; `concentration` receives the interpolated one.
+/// Scatters to every material particle.
 pub fn scatter_all(
     carriers: Carriers,
     flow: CarrierFlow,
-    targets: Targets,
+    rows: Rows,
+    links: &[Link],
     blend: Blend,
-    velocities: &mut [Velocity],
-    gradients: &mut [VelocityGradient],
-    concentration: &mut [f64],
+    received: Received,
 ) {
     let kernel = carriers.kernel();
-    let outputs = velocities.par_iter_mut().zip(gradients).zip(concentration);
-    outputs.enumerate().with_min_len(256).for_each(|(l, ((velocity, gradient), gamma))| {
-        let taken = Taken::at(carriers, flow, targets, &kernel, l);
-        let flip = velocity.0 + taken.change;
-        velocity.0 = tangential(taken.velocity.lerp(flip, blend.flip), targets.normals[l].0);
-        gradient.0 = if blend.affine && !targets.links[l].is_one_sided { taken.gradient } else { DMat3::ZERO };
-        *gamma = taken.concentration;
+    let Received { velocities, gradients, concentration } = received;
+    let outputs = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE));
+    let pieces = outputs.zip(concentration.par_chunks_mut(PIECE)).zip(links.par_chunks(PIECE)).enumerate();
+    pieces.for_each_init(Tile::default, |tile, (piece, (((velocities, gradients), concentration), links))| {
+        let rows = rows.piece(piece);
+        tile.for_each(carriers, rows, |tile, range| {
+            for l in range {
+                let site = Site::new(rows.positions[l].0, rows.normals[l].0);
+                tile.find_hits(&kernel, &site);
+                let taken = Taken::at(tile, &site, links[l], flow, blend);
+                let flip = velocities[l].0 + taken.change;
+                velocities[l].0 = tangential(taken.velocity.lerp(flip, blend.flip), site.normal);
+                gradients[l].0 = taken.gradient;
+                concentration[l] = taken.concentration;
+            }
+        });
     });
 }
 
-/// What one material particle takes.
-#[derive(Default)]
+/// What one material particle takes; the vectors may have a part along its normal.
 struct Taken {
     velocity: DVec3,
     change: DVec3,
@@ -89,38 +93,52 @@ struct Taken {
 }
 
 impl Taken {
-    fn at(carriers: Carriers, flow: CarrierFlow, targets: Targets, kernel: &Kernel, l: usize) -> Self {
-        let (place, normal, link) = (targets.positions[l].0, targets.normals[l].0, targets.links[l]);
-        let mut taken = Self::default();
-        let (mut affine, mut inertia) = (DMat3::ZERO, DMat3::ZERO);
-        carriers.for_each_near(kernel, place, normal, targets.regions[l], |e, r, value| {
-            let weight = link.weight(value, r);
-            let rotation = MinimalRotation::between(carriers.normals[e].0, normal);
-            let velocity = rotation.apply(flow.velocity[e]);
-            let r = tangential(r, normal);
-            taken.velocity += velocity * weight;
-            taken.change += rotation.apply(flow.change[e]) * weight;
-            taken.concentration += weight * flow.concentration[e];
-            affine += outer(weight, velocity, r);
-            inertia += outer(weight, r, r);
-        });
-        taken.gradient = affine * tangential_inverse(inertia, normal);
-        taken
+    #[inline]
+    fn at(tile: &Tile, site: &Site, link: Link, flow: CarrierFlow, blend: Blend) -> Self {
+        let (mut velocity, mut change, mut concentration) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        let (mut affine, mut inertia) = ([DVec3::ZERO; 2], DMat2::ZERO);
+        for hit in tile.hits() {
+            let (e, normal) = tile.carrier(hit.slot);
+            let weight = link.weight(hit);
+            let there = nearly_rotated(flow.velocity[e], normal, site.normal) * weight;
+            velocity += there;
+            concentration += weight * flow.concentration[e];
+            if blend.flip > 0.0 {
+                change += nearly_rotated(flow.change[e], normal, site.normal) * weight;
+            }
+            affine[0] += there * hit.along.x;
+            affine[1] += there * hit.along.y;
+            inertia += plane_outer(weight, hit.along);
+        }
+        let gradient = if blend.affine && !link.is_one_sided { gradient(affine, inertia, site) } else { DMat3::ZERO };
+        Self { velocity, change, gradient, concentration }
     }
 }
 
-/// One scalar of the carriers, interpolated at every material particle.
-pub fn interpolate(carriers: Carriers, targets: Targets, value: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+/// `B D^-1`, given `B` by its columns along the tangents and `D` in their coordinates.
+fn gradient(affine: [DVec3; 2], inertia: DMat2, site: &Site) -> DMat3 {
+    let inverse = plane_inverse(inertia);
+    let along = |column: DVec2| tangential(affine[0] * column.x + affine[1] * column.y, site.normal);
+    outer(1.0, along(inverse.x_axis), site.tangents[0]) + outer(1.0, along(inverse.y_axis), site.tangents[1])
+}
+
+/// One scalar of the carriers, interpolated at every linked row.
+#[must_use]
+pub fn interpolate(carriers: Carriers, rows: Rows, links: &[Link], value: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
     let kernel = carriers.kernel();
-    let at = |l: usize| {
-        let (place, normal, link) = (targets.positions[l].0, targets.normals[l].0, targets.links[l]);
-        let mut sum = 0.0;
-        carriers.for_each_near(&kernel, place, normal, targets.regions[l], |e, r, w| {
-            sum += link.weight(w, r) * value(e);
+    let mut values = vec![0.0; links.len()];
+    let pieces = values.par_chunks_mut(PIECE).zip(links.par_chunks(PIECE)).enumerate();
+    pieces.for_each_init(Tile::default, |tile, (piece, (values, links))| {
+        let rows = rows.piece(piece);
+        tile.for_each(carriers, rows, |tile, range| {
+            for l in range {
+                tile.find_hits(&kernel, &Site::new(rows.positions[l].0, rows.normals[l].0));
+                let terms = tile.hits().iter().map(|hit| links[l].weight(hit) * value(tile.carrier(hit.slot).0));
+                values[l] = terms.sum();
+            }
         });
-        sum
-    };
-    (0..targets.positions.len()).into_par_iter().with_min_len(256).map(at).collect()
+    });
+    values
 }
 
 /// Scatters the flow to the material particles and sets the thickness they show.
@@ -150,7 +168,7 @@ pub fn scatter_flow(
     let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
     let (positions, normals, regions, volumes, amounts, mut velocities, mut gradients, mut thickness) =
         columns_mut(&mut material);
-    let targets = Targets { positions, normals, regions, links: &transfers.links };
+    let rows = Rows { positions, normals, regions };
     let change: Vec<DVec3> = flow.solved.iter().zip(&flow.gathered).map(|(new, old)| *new - *old).collect();
     let elastic = liquid.elasticity > 0.0;
     // What is shown follows the concentration; without surfactant there is only the carriers' thickness.
@@ -162,9 +180,13 @@ pub fn scatter_flow(
     let carrier_flow = CarrierFlow { velocity: &flow.solved, change: &change, concentration: &shown };
     let blend = Blend { affine: melp.affine, flip: melp.flip };
     let mut taken = vec![0.0; positions.len()];
-    let velocities = velocities.bypass_change_detection();
-    scatter_all(carriers, carrier_flow, targets, blend, velocities, gradients.bypass_change_detection(), &mut taken);
-    for (l, eta) in thickness.bypass_change_detection().iter_mut().enumerate() {
+    let received = Received {
+        velocities: velocities.bypass_change_detection(),
+        gradients: gradients.bypass_change_detection(),
+        concentration: &mut taken,
+    };
+    scatter_all(carriers, carrier_flow, rows, &transfers.links, blend, received);
+    thickness.bypass_change_detection().par_iter_mut().enumerate().with_min_len(4096).for_each(|(l, eta)| {
         eta.0 = if elastic { volumes[l].0 * taken[l] / amounts[l].0 } else { taken[l] };
-    }
+    });
 }

@@ -1,9 +1,7 @@
 //! What the stages of one step hand to each other. All of it is derived from columns and rebuilt in every step, so a
 //! checkpoint holds none of it.
 
-use super::gather::Gathered;
 use super::links::Link;
-use crate::neighbours::cells::CellList;
 use crate::operators::conjugate_gradient::Workspace;
 use crate::operators::stencil::Stencil;
 use bevy_ecs::resource::Resource;
@@ -18,10 +16,6 @@ pub struct FilmStencil(pub Stencil);
 pub struct Transfers {
     /// Correction of each material particle's weights.
     pub links: Vec<Link>,
-    /// Cells of the material particles.
-    pub cells: CellList,
-    /// What each carrier gathered.
-    pub gathered: Vec<Gathered>,
     /// Areas that agree with the transfer, m^2, per carrier.
     pub dual_areas: Vec<f64>,
     /// Concentration gathered from the material, `Gamma*`, mol/m^2, per carrier.

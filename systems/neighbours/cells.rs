@@ -63,24 +63,29 @@ impl CellList {
     /// Calls `visit` with every row in the 27 cells around `point`: all rows within one cell size, and more.
     /// The order is fixed by the grid.
     #[inline]
-    pub fn for_each_near(&self, point: DVec3, mut visit: impl FnMut(usize)) {
+    pub fn for_each_near(&self, point: DVec3, visit: impl FnMut(usize)) {
+        let one = DVec3::splat(1.0 / self.inverse_size);
+        self.for_each_in_box(point - one, point + one, visit);
+    }
+
+    /// Calls `visit` with every row in the cells that the box from `low` to `high` touches: all rows in the box, and more.
+    /// The order is fixed by the grid.
+    #[inline]
+    pub fn for_each_in_box(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(usize)) {
         if self.members.is_empty() {
             return;
         }
-        let centre = self.place(point);
-        let span = |axis: usize| {
-            let last = self.counts[axis] as isize - 1;
-            (centre[axis] - 1).max(0)..=(centre[axis] + 1).min(last)
-        };
+        let (first, last) = (self.place(low), self.place(high));
+        let span = |axis: usize| first[axis].max(0)..=last[axis].min(self.counts[axis] as isize - 1);
         let across = span(0);
         if across.is_empty() {
             return;
         }
         for z in span(2) {
             for y in span(1) {
-                let first = self.starts[self.index([*across.start(), y, z])] as usize;
+                let start = self.starts[self.index([*across.start(), y, z])] as usize;
                 let end = self.starts[self.index([*across.end(), y, z]) + 1] as usize;
-                self.members[first..end].iter().for_each(|&row| visit(row as usize));
+                self.members[start..end].iter().for_each(|&row| visit(row as usize));
             }
         }
     }

@@ -27,7 +27,9 @@ pub struct SolveInfo {
 
 /// A solve that did not reach its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("no convergence after {iterations} iterations: residual {residual:.2e} of the right-hand side, {tolerance:.2e} wanted")]
+#[error(
+    "no convergence after {iterations} iterations: residual {residual:.2e} of the right-hand side, {tolerance:.2e} wanted"
+)]
 pub struct NotConverged {
     /// Iterations done.
     pub iterations: u32,

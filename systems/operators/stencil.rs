@@ -102,9 +102,8 @@ impl Stencil {
         self.lists = NeighbourLists::within(positions, positions, wide, radius, |i, j| {
             i != j && regions[i] == regions[j] && normals[i].0.dot(normals[j].0) > SAME_SHEET
         });
-        self.wall_lists = NeighbourLists::within(positions, points.wall, wall, radius, |i, j| {
-            regions[i] == points.wall_regions[j]
-        });
+        self.wall_lists =
+            NeighbourLists::within(positions, points.wall, wall, radius, |i, j| regions[i] == points.wall_regions[j]);
     }
 
     fn weigh(&mut self, points: Points) {
@@ -120,9 +119,8 @@ impl Stencil {
                 4.0 / (inner.sum::<f64>() + outer.sum::<f64>())
             })
             .collect();
-        let weight = |i: usize, j: usize, d: DVec3| {
-            0.5 * self.areas[i] * self.areas[j] * slope(d) * (scales[i] + scales[j])
-        };
+        let weight =
+            |i: usize, j: usize, d: DVec3| 0.5 * self.areas[i] * self.areas[j] * slope(d) * (scales[i] + scales[j]);
         let weights = flat_rows(&self.lists, |i| self.offsets(points, i).map(move |(j, d)| weight(i, j, d)));
         let wall_weight = |i: usize, d: DVec3| self.areas[i] * wall_area * slope(d) * scales[i];
         let wall_weights =

@@ -1,6 +1,6 @@
 //! Vectors between tangent planes.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// The part of `v` perpendicular to the unit normal `n`.
 #[must_use]
@@ -67,9 +67,59 @@ pub fn tangential_inverse(m: DMat3, n: DVec3) -> DMat3 {
     filled.inverse() - outer(1.0 / trace, n, n)
 }
 
+/// `v v^T` in a plane, weighted by `weight`.
+#[must_use]
+#[inline]
+pub fn plane_outer(weight: f64, v: DVec2) -> DMat2 {
+    DMat2::from_cols(v * (weight * v.x), v * (weight * v.y))
+}
+
+/// As [`tangential_inverse`], in coordinates of the plane.
+#[must_use]
+#[inline]
+pub fn plane_inverse(m: DMat2) -> DMat2 {
+    let trace = m.x_axis.x + m.y_axis.y;
+    if m.determinant() <= 1e-6 * trace * trace { DMat2::ZERO } else { m.inverse() }
+}
+
+/// The minimal rotation of `v` from the plane of `a` into that of `b`, but for a part along `b`, which the caller
+/// removes: `v - a ((a + b).v) / (1 + a.b)`.
+///
+/// Sums of rotated vectors can be made [`tangential`] once, after the sum.
+#[must_use]
+#[inline]
+pub fn nearly_rotated(v: DVec3, a: DVec3, b: DVec3) -> DVec3 {
+    v - a * ((a + b).dot(v) / (1.0 + a.dot(b)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_short_rotation_is_the_minimal_one_in_the_plane() {
+        let (a, b) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(1.0, 2.0, 2.0) / 3.0);
+        let v = DVec3::new(0.3, -1.0, 2.0);
+        let whole = MinimalRotation::between(a, b).apply(v);
+        assert!(tangential(nearly_rotated(v, a, b), b).distance(tangential(whole, b)) < 1e-15);
+    }
+
+    #[test]
+    fn the_plane_inverse_agrees_with_the_tangential_one() {
+        let n = DVec3::new(1.0, 2.0, 2.0) / 3.0;
+        let (t1, t2) = n.any_orthonormal_pair();
+        let v = DVec2::new(2.0, -0.5);
+        let m = plane_outer(2.0, v) + plane_outer(1.0, DVec2::Y);
+        let in_space = |m: DMat2| {
+            outer(m.x_axis.x, t1, t1)
+                + outer(m.x_axis.y, t2, t1)
+                + outer(m.y_axis.x, t1, t2)
+                + outer(m.y_axis.y, t2, t2)
+        };
+        let difference = tangential_inverse(in_space(m), n) - in_space(plane_inverse(m));
+        assert!(difference.to_cols_array().iter().all(|d| d.abs() < 1e-13));
+        assert_eq!(plane_inverse(plane_outer(2.0, v)), DMat2::ZERO);
+    }
 
     #[test]
     fn the_minimal_rotation_takes_one_normal_into_the_other_and_keeps_lengths() {

@@ -14,6 +14,7 @@ use froth::errors::error_page;
 use froth::gallery::GALLERY;
 use froth::method::METHODS;
 use froth::run::{Manifest, RunState};
+use froth::verify::LAWS;
 use serde_json::Value;
 
 /// A folder with the small scene.
@@ -149,6 +150,19 @@ fn scenes_lists_every_built_in_scene() {
     let text = stdout(&output(folder.path(), &["scenes"]));
     assert_eq!(text.lines().count(), GALLERY.len());
     assert!(GALLERY.iter().all(|scene| text.contains(scene.name) && text.contains(scene.summary)));
+}
+
+#[test]
+fn verify_prints_a_row_per_finding_and_knows_its_laws() {
+    let folder = folder();
+    let found = output(folder.path(), &["verify", "operators"]);
+    assert_eq!(exit_code(&found), 0, "{}", stdout(&found));
+    assert!(stdout(&found).ends_with("all 1 laws hold\n") && stdout(&found).contains("  ok\n"), "{}", stdout(&found));
+    let list = stdout(&output(folder.path(), &["verify", "--list"]));
+    assert!(LAWS.iter().all(|law| list.contains(law.name) && list.contains(law.summary) && list.contains(law.source)));
+    let slip = output(folder.path(), &["verify", "operator"]);
+    assert_eq!(exit_code(&slip), 2);
+    assert!(stderr(&slip).contains("did you mean `operators`?"), "{}", stderr(&slip));
 }
 
 #[test]

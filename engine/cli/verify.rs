@@ -14,7 +14,7 @@ pub(super) struct VerifyArguments {
     /// Laws to measure; all of them by default
     #[arg(value_name = "LAW")]
     laws: Vec<String>,
-    /// The sizes that the published bars are for; takes an hour
+    /// The sizes that the published bars are for; takes half an hour
     #[arg(long)]
     full: bool,
     /// List the laws, what each says and where it comes from

@@ -28,12 +28,14 @@ struct Sample {
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let (count, end): (u32, f64) = effort.choose((500, 1.0), (1000, 5.0));
     let scene = SceneRun::of("resting_bubble").with("Particles(1000)", &format!("Particles({count})"));
-    let mut found = findings("with air", &rest(&scene, end, f64::INFINITY)?, end);
+    let mut found = findings("with air", &rest(&scene, end, f64::INFINITY)?, end, 1e-3);
     // One substep of the normal motion on each geometry: with the bare mass several in a row are not stable.
     let (end, spacing) = (effort.choose(0.08, 5.0), (4.0 * PI / f64::from(count)).sqrt() * RADIUS);
     let step = SUBSTEP * spacing / (2.0 * TENSION / MASS).sqrt();
     let bare = scene.with("liquid_per_carrier: 8", "liquid_per_carrier: 8, air: None");
-    found.extend(findings("bare film", &rest(&bare, end, step)?, end));
+    // Sampling noise of 3e-4 in the concentration sets the liquid in motion at that part of the wave speed, 14 m/s; it
+    // takes seconds to come to rest.
+    found.extend(findings("bare film", &rest(&bare, end, step)?, end, effort.choose(5e-3, 1e-3)));
     Ok(found)
 }
 
@@ -57,7 +59,8 @@ fn rest(scene: &SceneRun, end: f64, step: f64) -> Result<Vec<Sample>, LawError> 
     Ok(samples)
 }
 
-fn findings(name: &str, samples: &[Sample], end: f64) -> Vec<Finding> {
+/// `calm`: speed of the liquid allowed at the end, m/s.
+fn findings(name: &str, samples: &[Sample], end: f64, calm: f64) -> Vec<Finding> {
     let exact = 4.0 / 3.0 * PI * RADIUS.powi(3);
     let first = samples.first().map_or(f64::NAN, |sample| sample.evolved);
     let largest = |f: &dyn Fn(&Sample) -> f64| {
@@ -87,7 +90,7 @@ fn findings(name: &str, samples: &[Sample], end: f64) -> Vec<Finding> {
         ),
         Finding::vanishing(of("largest normal speed at the end, m/s"), within(0.75, 1.0, &|s| s.speed), 1e-3),
         Finding::vanishing(of("normal speed, last quarter over first"), decay(&|s| s.speed), 1.0),
-        Finding::vanishing(of("mean speed of the liquid at the end, m/s"), within(0.75, 1.0, &|s| s.flow), 1e-3),
+        Finding::vanishing(of("mean speed of the liquid at the end, m/s"), within(0.75, 1.0, &|s| s.flow), calm),
         Finding::vanishing(of("carriers limited, in all steps"), largest(&|s| s.limited), 0.0),
     ]
 }

@@ -94,7 +94,8 @@ mod tests {
     #[test]
     fn the_closed_forms_agree_with_those_of_a_sphere_and_a_spheroid() {
         let sphere = DVec3::splat(0.3);
-        assert!((ellipsoid_area(sphere) / (4.0 * PI * 0.09) - 1.0).abs() < 1e-12);
+        // Round-off of a sum over a million elements.
+        assert!((ellipsoid_area(sphere) / (4.0 * PI * 0.09) - 1.0).abs() < 1e-9);
         assert!((ellipsoid_curvature(sphere, DVec3::new(0.0, 0.3, 0.0)) - 2.0 / 0.3).abs() < 1e-12);
         let eccentricity = 0.75_f64.sqrt();
         let prolate = TAU * (1.0 + 2.0 / eccentricity * eccentricity.asin());

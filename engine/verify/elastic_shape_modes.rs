@@ -73,7 +73,7 @@ impl Inertia {
             refinement.add(1.0 / f64::from(*count).sqrt(), measured / exact - 1.0);
         }
         let what = format!("frequency n = {degree} {}, Hz", self.what);
-        Ok(Finding::relative(what, exact / TAU, measured / TAU, 0.02).converging(&refinement, 1.7))
+        Ok(Finding::relative(what, exact / TAU, measured / TAU, 0.02).converging(&refinement, 1.5))
     }
 
     fn ring(&self, degree: u32, count: u32, exact: f64) -> Result<Oscillation, LawError> {

@@ -25,21 +25,29 @@ const MODES: [(u32, f64); 3] = [(2, 0.01), (3, 0.015), (4, 0.025)];
 
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let counts: &[u32] = effort.choose(&[500, 1000, 2000], &[1000, 2000, 4000]);
-    let finding = |(degree, tolerance): (u32, f64)| {
-        let exact = exact_frequency(degree);
-        let mut refinement = Refinement::default();
-        let mut measured = f64::NAN;
-        for count in counts {
-            measured = ring(degree, *count)?.frequency;
-            refinement.add(1.0 / f64::from(*count).sqrt(), measured / exact - 1.0);
-        }
-        let (exact, measured) = (exact / std::f64::consts::TAU, measured / std::f64::consts::TAU);
-        // Errors fall with the square of the spacing: the bar is for 4000 carriers.
-        let tolerance = tolerance * 4000.0 / f64::from(counts[counts.len() - 1]);
-        Ok(Finding::relative(format!("frequency n = {degree}, Hz"), exact, measured, tolerance)
-            .converging(&refinement, 1.7))
-    };
-    MODES.into_iter().map(finding).collect()
+    let modes = MODES.into_iter().map(|(degree, tolerance)| mode(degree, tolerance, counts));
+    let findings: Result<Vec<_>, LawError> = modes.collect();
+    Ok(findings?.into_iter().flatten().collect())
+}
+
+/// Frequency and damping of one mode.
+fn mode(degree: u32, tolerance: f64, counts: &[u32]) -> Result<[Finding; 2], LawError> {
+    let exact = exact_frequency(degree);
+    let mut refinement = Refinement::default();
+    let (mut measured, mut damping) = (f64::NAN, f64::NAN);
+    for count in counts {
+        let fit = ring(degree, *count)?;
+        refinement.add(1.0 / f64::from(*count).sqrt(), fit.frequency / exact - 1.0);
+        (measured, damping) = (fit.frequency, fit.damping);
+    }
+    // Errors fall with the square of the spacing: the bar is for 4000 carriers.
+    let tolerance = tolerance * 4000.0 / f64::from(counts[counts.len() - 1]);
+    let tau = std::f64::consts::TAU;
+    Ok([
+        Finding::relative(format!("frequency n = {degree}, Hz"), exact / tau, measured / tau, tolerance)
+            .converging(&refinement, 1.7),
+        Finding::vanishing(format!("damping n = {degree}, relative to omega"), damping / measured, 2e-3),
+    ])
 }
 
 fn exact_frequency(degree: u32) -> f64 {

@@ -32,7 +32,14 @@ impl Kernel {
     #[must_use]
     #[inline]
     pub fn value(&self, distance_squared: f64) -> f64 {
-        let q = distance_squared.sqrt() * self.inverse;
+        self.value_at(distance_squared.sqrt())
+    }
+
+    /// `W(r)` in 1/m^2.
+    #[must_use]
+    #[inline]
+    pub fn value_at(&self, distance: f64) -> f64 {
+        let q = distance * self.inverse;
         if q >= 1.0 {
             return 0.0;
         }
@@ -44,7 +51,14 @@ impl Kernel {
     #[must_use]
     #[inline]
     pub fn slope_over_distance(&self, distance_squared: f64) -> f64 {
-        let q = distance_squared.sqrt() * self.inverse;
+        self.slope_over_distance_at(distance_squared.sqrt())
+    }
+
+    /// `g(r) = -W'(r)/r` in 1/m^4. Finite at `r = 0`.
+    #[must_use]
+    #[inline]
+    pub fn slope_over_distance_at(&self, distance: f64) -> f64 {
+        let q = distance * self.inverse;
         if q >= 1.0 {
             return 0.0;
         }

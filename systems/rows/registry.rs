@@ -228,7 +228,14 @@ fn column_numbers<K: Kind, C: Column>(world: &mut World) -> Vec<f64> {
 fn first_not_finite<K: Kind, C: Column>(world: &mut World) -> Option<usize> {
     let mut state = world.query_filtered::<&C, With<K>>();
     let tables = state.contiguous_iter(world).expect("invariant: columns are stored in tables");
-    tables.flatten().position(|value| !value.value().is_finite())
+    let mut start = 0;
+    for table in tables {
+        if let Some(row) = table.par_iter().with_min_len(8192).position_first(|value| !value.value().is_finite()) {
+            return Some(start + row);
+        }
+        start += table.len();
+    }
+    None
 }
 
 fn stable_id<K: Kind>(world: &mut World, row: usize) -> Option<u64> {

@@ -58,14 +58,8 @@ fn measure_parts(simulation: &mut Simulation) {
     let spacing = simulation.world().resource::<Lamellae>().spacing;
     let (mut positions, mut normals) = (simulation.column::<E, Position>(), simulation.column::<E, Normal>());
     let (regions, mut shapes) = (simulation.column::<E, InRegion>(), simulation.column::<E, ShapeOperator>());
-    let points = Points {
-        positions: &positions,
-        normals: &normals,
-        regions: &regions,
-        wall: &[],
-        wall_regions: &[],
-        spacing,
-    };
+    let points =
+        Points { positions: &positions, normals: &normals, regions: &regions, wall: &[], wall_regions: &[], spacing };
     let mut stencil = Stencil::build(points);
     time("build the stencil", || stencil.rebuild(points));
     let carriers = Carriers { positions: &positions, normals: &normals, regions: &regions, stencil: &stencil, spacing };
@@ -111,8 +105,7 @@ fn measure_transfers(simulation: &mut Simulation, carriers: Carriers, shapes: &[
     let blend = Blend { affine: true, flip: 0.0 };
     let mut taken = vec![0.0; positions.len()];
     time("scatter (E2L)", || {
-        let received =
-            Received { velocities: &mut velocities, gradients: &mut gradients, concentration: &mut taken };
+        let received = Received { velocities: &mut velocities, gradients: &mut gradients, concentration: &mut taken };
         scatter_all(carriers, flow, rows, &links, blend, received);
     });
     time("advance and project the liquid", || {

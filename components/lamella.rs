@@ -30,6 +30,8 @@ pub struct Lamella {
     pub rim: Option<Rim>,
     /// Size that relative lengths refer to, m: the radius of a sphere.
     pub size: f64,
+    /// Centre of the shape the film was made as, m.
+    pub centre: DVec3,
     /// Mass of air per film area that moves with its normal motion, kg/m^2.
     pub air_mass: f64,
 }
@@ -64,7 +66,30 @@ pub enum Rim {
     },
 }
 
+impl Lamella {
+    /// Whether the film encloses gas: a closed film by itself, a dome together with the ground it stands on.
+    #[must_use]
+    pub fn encloses_gas(&self) -> bool {
+        Rim::leaves_gas_enclosed(self.rim)
+    }
+
+    /// Point from which the enclosed volume is measured, m: one that the ground, if any, adds nothing to.
+    #[must_use]
+    pub fn volume_origin(&self) -> DVec3 {
+        match self.rim {
+            Some(Rim::Ground { point, .. }) => point,
+            _ => self.centre,
+        }
+    }
+}
+
 impl Rim {
+    /// Whether a film with this rim, or none, encloses gas.
+    #[must_use]
+    pub fn leaves_gas_enclosed(rim: Option<Self>) -> bool {
+        matches!(rim, None | Some(Self::Ground { .. }))
+    }
+
     /// How far `place` lies beyond the rim (positive outside), m, and the unit vector back inside.
     #[must_use]
     pub fn beyond(&self, place: DVec3) -> (f64, DVec3) {

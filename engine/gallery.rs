@@ -45,6 +45,22 @@ pub const GALLERY: &[BuiltInScene] = &[
         summary: "a bubble at rest at 1 atm stays at rest",
         text: include_str!("../scenes/resting_bubble.ron"),
     },
+    // For `froth verify` alone.
+    BuiltInScene {
+        name: "shape_mode",
+        summary: "law: a bubble of film mass alone rings in its lowest shape mode",
+        text: include_str!("../scenes/shape_mode.ron"),
+    },
+    BuiltInScene {
+        name: "elastic_shape_mode",
+        summary: "law: a bubble with liquid, surfactant and air rings in its lowest shape mode",
+        text: include_str!("../scenes/elastic_shape_mode.ron"),
+    },
+    BuiltInScene {
+        name: "marangoni_wave",
+        summary: "law: liquid and surfactant slosh to and fro in a flat film",
+        text: include_str!("../scenes/marangoni_wave.ron"),
+    },
 ];
 
 /// The built-in scene of a name.

@@ -13,6 +13,7 @@ pub mod picture;
 pub mod run;
 pub mod scene;
 pub mod simulation;
+pub mod verify;
 pub mod whole_file;
 
 pub use simulation::Simulation;

@@ -102,7 +102,7 @@ fn an_error_in_a_scene_has_a_place_and_a_code() {
     let folder = folder();
     fs::write(folder.path().join("broken.ron"), common::SCENE.replace("radius", "radus")).unwrap();
     let message = stderr(&output(folder.path(), &["check", "broken.ron"]));
-    assert!(message.starts_with("broken.ron:10:20: error[F00"), "{message}");
+    assert!(message.starts_with("broken.ron:11:20: error[F00"), "{message}");
     assert!(message.contains("\n  help: "), "{message}");
 }
 

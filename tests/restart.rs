@@ -45,7 +45,7 @@ const OPEN_FILMS: &str = r#"Scene(
     frames_per_second: 100,
     entities: [
         [ Disc(radius: "4 cm"), Film(thickness: Noise(mean: "400 nm"), warmth: 0.2), Swirl(speed: "5 cm/s") ],
-        [ HalfSphere(centre: (0.2, 0.0, 0.0), radius: "3 cm"), Film(thickness: Uniform("300 nm")) ],
+        [ Rectangle(centre: (0.2, 0.0, 0.0), width: "8 cm", height: "8 cm"), Film(thickness: Uniform("300 nm")) ],
         [ Sphere(centre: (-0.2, 0.0, 0.0), radius: "3 cm"), Film(thickness: Uniform("300 nm")), Drift((0.1, 0.0, 0.0)) ],
         [ HeatSource(position: (0.0, -0.03, 0.0), radius: "2 cm") ],
     ],

@@ -6,7 +6,7 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use common::{
     StopAfter, assert_same_results, draw, exit_code, files, froth, output, results, scene_file, signal, simulation,
@@ -99,14 +99,28 @@ fn a_frame_that_does_not_fit_on_the_disk_is_named_and_the_others_stay() {
     assert!(matches!(Manifest::read(&path).unwrap().state, RunState::Failed(because) if because == message));
 }
 
+/// Runs the scene where no file may be longer than `blocks` of 512 bytes: writing fails as on a full disk.
+fn run_on_small_disk(parent: &TempDir, blocks: u32) -> Output {
+    scene_file(parent.path());
+    let program = env!("CARGO_BIN_EXE_froth");
+    let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec {program} run small.ron --out full --quiet");
+    Command::new("sh").args(["-c", &limited]).current_dir(parent.path()).output().unwrap()
+}
+
+#[test]
+fn a_picture_that_does_not_fit_ends_the_run_with_1() {
+    let parent = tempfile::tempdir().unwrap();
+    let output = run_on_small_disk(&parent, 6);
+    assert_eq!(exit_code(&output), 1);
+    let message = stderr(&output);
+    assert!(message.starts_with("error: frame 0 (t = 0.000000 s) is lost: File too large"), "{message}");
+    assert!(files(&parent.path().join("full/frames")).is_empty());
+}
+
 #[test]
 fn a_checkpoint_that_does_not_fit_ends_the_run_with_1_and_leaves_no_part_of_it() {
     let parent = tempfile::tempdir().unwrap();
-    scene_file(parent.path());
-    let program = env!("CARGO_BIN_EXE_froth");
-    // Files of at most 64 kB, and no signal about it: writing fails as on a full disk.
-    let limited = format!("trap '' XFSZ; ulimit -f 128; exec {program} run small.ron --out full --quiet");
-    let output = Command::new("sh").args(["-c", &limited]).current_dir(parent.path()).output().unwrap();
+    let output = run_on_small_disk(&parent, 128);
     assert_eq!(exit_code(&output), 1);
     assert!(stderr(&output).contains("cannot be written: File too large"), "{}", stderr(&output));
     assert!(files(&parent.path().join("full/checkpoints")).is_empty());

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{assert_same_results, draw, simulation};
+use common::{SCENE, assert_same_results, draw};
+use froth::Simulation;
 use froth::run::{Run, RunFolder, RunSettings, Silent};
 use rayon::ThreadPoolBuilder;
 
@@ -14,7 +15,10 @@ fn any_number_of_threads_leaves_the_same_bytes() {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let folder = RunFolder::create(&folder(threads)).unwrap();
-            let mut run = Run::begin(simulation(), folder, RunSettings::default()).unwrap();
+            // More rows than a chunk of a reduction has, in both kinds.
+            let simulation = Simulation::builder().resolution(2.0).build_from_text("small.ron", SCENE).unwrap();
+            let settings = RunSettings { until: Some(0.04), ..RunSettings::default() };
+            let mut run = Run::begin(simulation, folder, settings).unwrap();
             run.drive(&mut draw, &mut Silent).unwrap();
         });
     }

@@ -92,7 +92,8 @@ pub struct MelpSettings {
     /// Fraction of the particle spacing that the fastest particle may cross in one step (plain number above 0). Default 0.99.
     #[serde(deserialize_with = "range::positive")]
     pub cfl: Ratio,
-    /// Material (Lagrangian) particles per carrier (Eulerian particle), 1 to 1000. Default 16.
+    /// Material (Lagrangian) particles per carrier (Eulerian particle), 0 to 1000. Default 16. With 0 the liquid does not flow:
+    /// the film moves along its normal alone, under the tension it has at rest.
     #[serde(deserialize_with = "range::particles_per_carrier")]
     pub liquid_per_carrier: u32,
     /// Inertia of the air that the film must push aside. Default [`AirInertia::Local`].

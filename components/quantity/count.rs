@@ -26,15 +26,22 @@ impl Count {
     pub const fn get(self) -> u64 {
         self.0
     }
+
+    /// A whole number that may also be zero, for [`range`](super::range).
+    pub(super) fn or_zero<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        deserializer.deserialize_any(CountVisitor { least: 0 }).map(Self::get)
+    }
 }
 
 impl<'de> Deserialize<'de> for Count {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(CountVisitor)
+        deserializer.deserialize_any(CountVisitor { least: 1 })
     }
 }
 
-struct CountVisitor;
+struct CountVisitor {
+    least: u64,
+}
 
 impl Visitor<'_> for CountVisitor {
     type Value = Count;
@@ -44,10 +51,7 @@ impl Visitor<'_> for CountVisitor {
     }
 
     fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Count, E> {
-        match value {
-            0 => Err(out_of_range(value).into_serde()),
-            _ => Ok(Count(value)),
-        }
+        if value >= self.least { Ok(Count(value)) } else { Err(out_of_range(value).into_serde()) }
     }
 
     fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Count, E> {
@@ -61,7 +65,7 @@ impl Visitor<'_> for CountVisitor {
                 Refusal::new(RefusalKind::NotFinite, message, "write a whole number, e.g. 4000 or 1e6").into_serde()
             );
         }
-        if value.fract() != 0.0 || !(1.0..=Count::LARGEST_FLOAT).contains(&value) {
+        if value.fract() != 0.0 || !(self.least as f64..=Count::LARGEST_FLOAT).contains(&value) {
             return Err(out_of_range(value).into_serde());
         }
         Ok(Count(value as u64))

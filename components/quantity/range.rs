@@ -102,16 +102,24 @@ pub fn harmonic_degree<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u
     small_count(deserializer, 64, "a spherical harmonic has a degree of 1 to 64 here")
 }
 
-/// Material particles per carrier: 1 to 1000.
+/// Material particles per carrier: 0 (a film whose liquid does not flow) to 1000.
 ///
 /// # Errors
 /// As the count, or when it is outside.
 pub fn particles_per_carrier<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
-    small_count(deserializer, 1000, "1 to 1000 material particles per carrier are wanted, e.g. 16")
+    let count = Count::or_zero(deserializer)?;
+    at_most(
+        count,
+        1000,
+        "0 to 1000 material particles per carrier are wanted, e.g. 16; 0 is a film whose liquid does not flow",
+    )
 }
 
 fn small_count<'de, De: Deserializer<'de>>(deserializer: De, largest: u32, rule: &str) -> Result<u32, De::Error> {
-    let count = Count::deserialize(deserializer)?.get();
+    at_most(Count::deserialize(deserializer)?.get(), largest, rule)
+}
+
+fn at_most<E: serde::de::Error>(count: u64, largest: u32, rule: &str) -> Result<u32, E> {
     let small = u32::try_from(count).unwrap_or(u32::MAX);
     demand(small <= largest, small, count, rule.to_owned())
 }

@@ -30,13 +30,7 @@ pub fn describe(scene: &str, measured: &Measurement) -> String {
 #[must_use]
 pub fn csv(scene: &str, measured: &Measurement) -> String {
     let count = |kind: &str| measured.rows.iter().find(|(name, _)| *name == kind).map_or(0, |(_, count)| *count);
-    let head = format!(
-        "{scene},{},{},{},{}",
-        count("eulerian"),
-        count("lagrangian"),
-        measured.threads,
-        measured.steps
-    );
+    let head = format!("{scene},{},{},{},{}", count("eulerian"), count("lagrangian"), measured.threads, measured.steps);
     let stages = measured.stages.iter().map(|(stage, time)| (format!("{stage:?}"), milliseconds(*time), "ms"));
     let optional = [
         measured.processor.map(|time| ("processors".to_owned(), milliseconds(time), "ms")),

@@ -163,7 +163,8 @@ pub fn load(simulation: &mut Simulation, path: &Path) -> Result<(), CheckpointEr
 }
 
 fn about(path: &Path, container: &Container) -> Result<About, CheckpointError> {
-    let unreadable = |message: String| CheckpointError::State { path: path.to_owned(), name: "about".to_owned(), message };
+    let unreadable =
+        |message: String| CheckpointError::State { path: path.to_owned(), name: "about".to_owned(), message };
     let bytes = container.section("about").ok_or_else(|| unreadable("it is missing".to_owned()))?;
     ron::de::from_bytes(bytes).map_err(|error| unreadable(error.to_string()))
 }
@@ -218,7 +219,12 @@ fn load_columns(
     Ok(())
 }
 
-fn load_states(world: &mut World, path: &Path, content: &Content, container: &Container) -> Result<(), CheckpointError> {
+fn load_states(
+    world: &mut World,
+    path: &Path,
+    content: &Content,
+    container: &Container,
+) -> Result<(), CheckpointError> {
     for state in &content.states {
         let Some(bytes) = container.section(&state_section(state.name)) else {
             state.remove(world);

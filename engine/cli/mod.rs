@@ -6,6 +6,7 @@
 //! | `bench` | `bench` |
 //! | `check` | `check` |
 //! | `explain` | `explain` |
+//! | `verify` | `verify` |
 //! | `scenes` | `gallery` |
 //!
 //! Errors are shown by `report`. Progress goes to standard error, results to standard output.
@@ -21,6 +22,7 @@ mod report;
 mod run;
 mod scene_choice;
 mod signals;
+mod verify;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -43,7 +45,12 @@ const STOPPED: u8 = 75;
 ///
 /// Without a command, runs the built-in default scene.
 #[derive(Debug, Parser)]
-#[command(name = "froth", version, about, after_help = "Exit codes: 0 done, 1 a run or check failed, 2 wrong usage or scene, 75 stopped at a checkpoint on a signal.")]
+#[command(
+    name = "froth",
+    version,
+    about,
+    after_help = "Exit codes: 0 done, 1 a run or check failed, 2 wrong usage or scene, 75 stopped at a checkpoint on a signal."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
@@ -59,6 +66,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Print the schedule of a scene and why each system runs or rests; or the page of an error code such as F0020
     Explain(explain::ExplainArguments),
+    /// Measure physical laws: expected, measured, error, tolerance, observed order
+    Verify(verify::VerifyArguments),
     /// Measure time per stage and step, and memory, at several sizes of a scene
     Bench(bench::BenchArguments),
     /// List the built-in scenes
@@ -81,6 +90,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Resume(arguments)) => run::resume(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Explain(arguments)) => explain::explain(&arguments),
+        Some(Command::Verify(arguments)) => verify::verify(&arguments),
         Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Scenes) => Ok(gallery::list()),
     };

@@ -24,6 +24,8 @@ pub(super) enum Failure {
     Pictures(PictureFramesError),
     #[error("there is no error code `{0}`; codes look like F0020")]
     NoSuchCode(String),
+    #[error("there is no law `{0}`{hint}; `froth verify --list` lists them", hint = .1.map(|name| format!(", did you mean `{name}`?")).unwrap_or_default())]
+    NoSuchLaw(String, Option<&'static str>),
     #[error("{0} threads cannot be started: {1}")]
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error(transparent)]
@@ -74,7 +76,10 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_) | Self::Pictures(_) | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
+            Self::NoSuchCode(_)
+            | Self::NoSuchLaw(..)
+            | Self::Pictures(_)
+            | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
         }
     }

@@ -78,11 +78,7 @@ impl PictureFrames {
         }
     }
 
-    fn paint_kind<K: Kind>(
-        &self,
-        world: &mut World,
-        spacing: impl Fn(f64) -> f64,
-    ) -> Result<RgbImage, PictureError> {
+    fn paint_kind<K: Kind>(&self, world: &mut World, spacing: impl Fn(f64) -> f64) -> Result<RgbImage, PictureError> {
         let positions: Vec<DVec3> = read_column::<K, Position>(world).iter().map(|p| p.0).collect();
         let normals: Vec<DVec3> = read_column::<K, Normal>(world).iter().map(|n| n.0).collect();
         let values = self.quantity.values(world);
@@ -98,10 +94,9 @@ fn framing(scene: &Scene, aspect: f64) -> Option<Camera> {
         let reach = DVec3::splat(shape.size());
         [shape.centre() - reach, shape.centre() + reach]
     });
-    let (low, high) =
-        corners.fold(None, |found: Option<(DVec3, DVec3)>, p| {
-            Some(found.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
-        })?;
+    let (low, high) = corners.fold(None, |found: Option<(DVec3, DVec3)>, p| {
+        Some(found.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
+    })?;
     let centre = 0.5 * (low + high);
     let radius = shapes.iter().map(|shape| shape.centre().distance(centre) + shape.size()).fold(0.0, f64::max);
     Some(Camera::framing(centre, MARGIN * radius, aspect))

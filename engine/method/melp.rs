@@ -16,11 +16,12 @@ use froth_components::film::{
 use froth_components::gas::{GasExponent, GasPressure, GasVolume, ReferencePressure, ReferenceVolume};
 use froth_components::identity::{InRegion, RegionId, StableId};
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Kind, LagrangianParticle, Region};
-use froth_components::lamella::{Lamella, Lamellae};
+use froth_components::lamella::{Lamella, Lamellae, Rim};
 use froth_components::material::{Atmosphere, Liquid};
 use froth_components::motion::{
     ExternalAcceleration, ExternalPressure, Normal, NormalSpeed, Position, Velocity, VelocityGradient,
 };
+use froth_systems::forces;
 use froth_systems::melp::discretise::{AuthoredFilm, DiscreteFilm, Sampling};
 use froth_systems::melp::normal_motion::NormalMotion;
 use froth_systems::melp::settings::Melp;
@@ -34,7 +35,6 @@ use froth_systems::rows::{fill_column, spawn_rows};
 use froth_systems::sampling::random::{self, Use};
 use froth_systems::sampling::surface::Perturbation;
 use froth_systems::stage::Stage;
-use froth_systems::forces;
 
 use super::{DiscretiseError, Method};
 use crate::scene::SceneHeader;
@@ -54,6 +54,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
+    plan.add(Stage::Clock, "limit the step by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "link the particle sets and gather liquid (L2E)", gather::gather_liquid, liquid());
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
@@ -117,8 +118,7 @@ pub fn register(world: &mut World) {
     ColumnRegistry::register::<Region, ReferencePressure>(world);
     ColumnRegistry::register::<Region, GasExponent>(world);
     StateRegistry::register::<Lamellae>(world, "lamellae");
-    let (settings, maximum_step) = (settings(world), world.resource::<SceneHeader>().maximum_step);
-    world.insert_resource(Melp::new(&settings, maximum_step.map(|step| step.si())));
+    world.insert_resource(Melp::new(&settings(world)));
     world.init_resource::<FilmStencil>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();
@@ -214,6 +214,7 @@ fn lamellae(films: &[DiscreteFilm], settings: &MelpSettings, air: Atmosphere, sp
             material: material..next.1,
             rim: film.rim,
             size: film.size,
+            centre: film.centre,
             air_mass: air_mass(settings.air, air, film.size),
         };
         (carriers, material) = next;
@@ -237,10 +238,10 @@ fn fill_gas(world: &mut World, films: &[DiscreteFilm], settings: &MelpSettings, 
         Gas::Isothermal => 1.0,
         Gas::Adiabatic(ratio) => ratio.si(),
     };
-    let volume = |film: &DiscreteFilm| if film.rim.is_none() { film.volume } else { 0.0 };
-    let pressure = |film: &DiscreteFilm| match film.rim {
-        None => air.pressure + liquid.surface_tension * film.twice_curvature,
-        Some(_) => air.pressure,
+    let volume = |film: &DiscreteFilm| if Rim::leaves_gas_enclosed(film.rim) { film.volume } else { 0.0 };
+    let pressure = |film: &DiscreteFilm| {
+        let excess = liquid.surface_tension * film.twice_curvature;
+        air.pressure + if Rim::leaves_gas_enclosed(film.rim) { excess } else { 0.0 }
     };
     let regions = concat(films, |region, _| vec![InRegion(region)]);
     fill_column::<Region, _>(world, &regions);
@@ -277,7 +278,10 @@ fn fill_carriers(world: &mut World, films: &[DiscreteFilm], liquid: Liquid) {
     let tension = |gamma: &f64| SurfaceTension(liquid.tension_at(*gamma));
     fill_column::<E, _>(world, &concentration.iter().map(tension).collect::<Vec<_>>());
     fill_column::<E, _>(world, &concentration.iter().map(|gamma| Surfactant(*gamma)).collect::<Vec<_>>());
-    fill_column::<E, _>(world, &concat(films, |_, film| film.carrier_thickness.iter().map(|e| Thickness(*e)).collect()));
+    fill_column::<E, _>(
+        world,
+        &concat(films, |_, film| film.carrier_thickness.iter().map(|e| Thickness(*e)).collect()),
+    );
     fill_column::<E, _>(world, &concat(films, |region, film| vec![InRegion(region); film.positions.len()]));
     fill_ids::<E>(world);
 }

@@ -102,10 +102,17 @@ impl Run {
     ///
     /// # Errors
     /// When there is no run in the folder, another process is at it, or all its checkpoints are damaged.
-    pub fn resume(path: &Path, builder: impl Fn() -> SimulationBuilder, settings: RunSettings) -> Result<Self, RunError> {
+    pub fn resume(
+        path: &Path,
+        builder: impl Fn() -> SimulationBuilder,
+        settings: RunSettings,
+    ) -> Result<Self, RunError> {
         let manifest = Manifest::read(path)?;
-        let scene = fs::read_to_string(path.join(SCENE))
-            .map_err(|cause| RunError::NotARun { path: path.to_owned(), file: SCENE, cause })?;
+        let scene = fs::read_to_string(path.join(SCENE)).map_err(|cause| RunError::NotARun {
+            path: path.to_owned(),
+            file: SCENE,
+            cause,
+        })?;
         let folder = RunFolder::open(path)?;
         let builder = || builder().overrides(manifest.overrides.clone());
         let simulation = newest_state(&folder, &builder, &manifest.scene, &scene)?;
@@ -121,13 +128,11 @@ impl Run {
         let steps = simulation.clock().steps;
         let path = folder.path().join(OBSERVABLES);
         let is_resumed = steps > 0;
-        let table =
-            if is_resumed { ObservablesTable::resume(&path, steps) } else { ObservablesTable::create(&path) };
+        let table = if is_resumed { ObservablesTable::resume(&path, steps) } else { ObservablesTable::create(&path) };
         let table = table.map_err(|cause| RunError::File { path, cause })?;
         let (until, wall_before) = (manifest.until_s, manifest.wall_s);
         let last_save = Instant::now();
-        let mut run =
-            Self { simulation, folder, table, manifest, settings, until, is_resumed, wall_before, last_save };
+        let mut run = Self { simulation, folder, table, manifest, settings, until, is_resumed, wall_before, last_save };
         run.manifest.threads = rayon::current_num_threads();
         run.write_manifest(RunState::Running)?;
         Ok(run)

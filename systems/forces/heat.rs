@@ -28,7 +28,8 @@ pub fn warm_liquid(
         for source in &sources {
             let distance = x.0.distance_squared(source.position.si()) / source.radius.si().powi(2);
             let share = (-distance).exp();
-            warmth.0 = relaxed(warmth.0, share / source.warming.si(), (1.0 - share) / source.cooling.si(), clock.step_length);
+            warmth.0 =
+                relaxed(warmth.0, share / source.warming.si(), (1.0 - share) / source.cooling.si(), clock.step_length);
         }
     });
 }

@@ -18,7 +18,7 @@ use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
-use froth_components::film::{ShapeOperator, Surfactant, SurfaceTension};
+use froth_components::film::{ShapeOperator, SurfaceTension, Surfactant};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle};
 use froth_components::lamella::Lamellae;
@@ -56,7 +56,13 @@ pub fn advance_carriers(
 }
 
 /// Refits every normal and shape operator from the carriers' places.
-pub fn refit(stencil: &Stencil, spacing: f64, positions: &[Position], normals: &mut [Normal], shapes: &mut [ShapeOperator]) {
+pub fn refit(
+    stencil: &Stencil,
+    spacing: f64,
+    positions: &[Position],
+    normals: &mut [Normal],
+    shapes: &mut [ShapeOperator],
+) {
     refit_all(positions, &stencil.lists, FIT_SUPPORT * spacing, normals, shapes);
 }
 
@@ -112,7 +118,8 @@ pub fn redistribute_carriers(
 }
 
 /// `q + d . grad q` on every carrier.
-fn moved_values(stencil: &Stencil, x: &[Position], n: &[Normal], moves: &[DVec3], values: &[f64]) -> Vec<f64> {
+#[must_use]
+pub fn moved_values(stencil: &Stencil, x: &[Position], n: &[Normal], moves: &[DVec3], values: &[f64]) -> Vec<f64> {
     (0..values.len())
         .into_par_iter()
         .with_min_len(256)

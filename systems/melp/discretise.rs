@@ -85,6 +85,8 @@ pub struct DiscreteFilm {
     pub rim: Option<Rim>,
     /// Size, m.
     pub size: f64,
+    /// Centre of the shape, m.
+    pub centre: DVec3,
     /// Enclosed volume of a closed film, m^3.
     pub volume: f64,
     /// Mean of `2 kappa` over the film per N/m of interface tension, 1/m: its excess pressure at rest.
@@ -111,7 +113,12 @@ impl DiscreteFilm {
         let surface = Surface::new(authored.shape, authored.perturbation);
         let count = (authored.shape.area() / sampling.spacing.powi(2)).round() as usize;
         let region = InRegion(region);
-        let mut film = Self { rim: surface.rim(), size: authored.shape.size(), ..Self::default() };
+        let mut film = Self {
+            rim: surface.rim(),
+            size: authored.shape.size(),
+            centre: authored.shape.centre(),
+            ..Self::default()
+        };
         film.wall = surface.wall(sampling.spacing).into_iter().map(Position).collect();
         film.place_carriers(&in_morton_order(surface.points(count, true), sampling.spacing), region, sampling.spacing)?;
         let stencil = film.stencil(region, sampling.spacing);
@@ -166,17 +173,18 @@ impl DiscreteFilm {
     }
 
     fn measure(&mut self, stencil: &Stencil) {
-        let area: f64 = stencil.areas.iter().sum();
+        // Rows next to a rim see the film on one side only.
+        let inner = || (0..stencil.len()).filter(|i| stencil.wall_lists.of(*i).is_empty());
+        let area: f64 = inner().map(|i| stencil.areas[i]).sum();
         let pull = |i: usize| stencil.weighted_offsets(&self.positions, i).map(|(_, w, d)| d * w).sum::<DVec3>();
-        let curvature: f64 = (0..stencil.len()).map(|i| -pull(i).dot(self.normals[i].0)).sum();
+        let curvature: f64 = inner().map(|i| -pull(i).dot(self.normals[i].0)).sum();
         self.twice_curvature = 2.0 * curvature / area;
-        self.volume = enclosed_volume(&self.positions, &self.normals, &stencil.areas, 0..stencil.len());
+        self.volume = enclosed_volume(&self.positions, &self.normals, &stencil.areas, 0..stencil.len(), self.centre);
     }
 
     fn set_carrier_fields(&mut self, authored: &AuthoredFilm, sampling: Sampling) {
         let places: Vec<DVec3> = self.positions.iter().map(|p| p.0).collect();
-        let extent =
-            Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
+        let extent = Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
         self.carrier_thickness = extent.thickness(&authored.film.thickness);
         self.concentration = extent.concentration(&authored.film, &self.carrier_thickness);
         self.concentration.iter_mut().for_each(|gamma| *gamma *= sampling.reference_surfactant);
@@ -217,8 +225,7 @@ impl DiscreteFilm {
         let rows = Rows { positions: &positions, normals: &normals, regions: &liquid_regions };
         let areas = fair_areas(carriers, rows);
         let places: Vec<DVec3> = positions.iter().map(|p| p.0).collect();
-        let extent =
-            Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
+        let extent = Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
         self.thickness = extent.thickness(&authored.film.thickness);
         let concentration = extent.concentration(&authored.film, &self.thickness);
         let gamma = |l: usize| sampling.reference_surfactant * concentration[l];

@@ -11,21 +11,21 @@
 //! Deng 2022, Algorithm 1, Eqs 6 and 7. DEVIATION: Eq. 7 lacks the mass of the particle; vectors are rotated, not
 //! projected; the normal velocity lives on the carriers and is not gathered.
 
+use super::links::{Carriers, Link};
 use super::state::{FilmStencil, TangentialFlow, Transfers};
+use super::tiles::{Hit, PIECE, Rows, Site, Tile};
 use crate::observe::{Fault, Faults};
+use crate::operators::tangent::{nearly_rotated, tangential};
 use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::film::{LiquidVolume, SurfactantAmount, Warmth};
+use froth_components::identity::InRegion;
 use froth_components::identity::StableId;
 use froth_components::kind::{EulerianParticle, LagrangianParticle};
 use froth_components::lamella::Lamellae;
 use froth_components::motion::NormalSpeed;
-use super::links::{Carriers, Link};
-use super::tiles::{Hit, PIECE, Rows, Site, Tile};
-use crate::operators::tangent::{nearly_rotated, tangential};
-use froth_components::film::{LiquidVolume, SurfactantAmount, Warmth};
-use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

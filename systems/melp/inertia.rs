@@ -12,6 +12,8 @@
 use super::normal_motion::NormalMotion;
 use super::settings::Melp;
 use super::state::{FilmStencil, TangentialFlow};
+use crate::operators::stencil::Stencil;
+use crate::operators::tangent::{MinimalRotation, tangential};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
@@ -19,10 +21,8 @@ use froth_components::clock::Clock;
 use froth_components::film::ShapeOperator;
 use froth_components::kind::EulerianParticle;
 use froth_components::material::Liquid;
-use froth_components::motion::{ExternalAcceleration, NormalSpeed, Position, Velocity};
-use crate::operators::stencil::Stencil;
-use crate::operators::tangent::{MinimalRotation, tangential};
 use froth_components::motion::Normal;
+use froth_components::motion::{ExternalAcceleration, NormalSpeed, Position, Velocity};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -62,8 +62,12 @@ fn mix(stencil: &Stencil, normals: &[Normal], velocities: &mut [DVec3], weight: 
 }
 
 /// Columns of the carriers that the liquid's acceleration reads.
-type InertiaColumns<'w, 's> =
-    Query<'w, 's, (&'static Position, &'static Normal, &'static ShapeOperator, &'static ExternalAcceleration), With<EulerianParticle>>;
+type InertiaColumns<'w, 's> = Query<
+    'w,
+    's,
+    (&'static Position, &'static Normal, &'static ShapeOperator, &'static ExternalAcceleration),
+    With<EulerianParticle>,
+>;
 
 /// Accelerates the liquid by external forces, the film's own motion, viscosity and smoothing.
 pub fn accelerate_liquid(
@@ -83,8 +87,7 @@ pub fn accelerate_liquid(
             - shapes[i].0 * u * (motion.displacement[i] / step);
         u + (tangential(pushes[i].0, n) + own) * step
     };
-    let mut velocities: Vec<DVec3> =
-        (0..stencil.len()).into_par_iter().with_min_len(128).map(accelerated).collect();
+    let mut velocities: Vec<DVec3> = (0..stencil.len()).into_par_iter().with_min_len(128).map(accelerated).collect();
     if liquid.viscosity > 0.0 {
         diffuse(stencil, normals, &mut velocities, liquid.viscosity, step);
     }

@@ -7,7 +7,9 @@
 //! Deng 2022, Eq. 6, whose weights (`b = 0`) do not conserve momentum in the affine transfer.
 //!
 //! # Limits
-//! Near a rim the correction is shortened so that no weight is negative; there only constants pass exactly.
+//! Next to a rim, where the correction would make a weight negative, there is none, and velocity gradients are dropped
+//! (`is_one_sided`): only constants pass exactly there. Extrapolated linear fields, passed to and fro, grow by a tenth per
+//! step.
 
 use super::settings::TRANSFER_SUPPORT;
 use super::state::FilmStencil;
@@ -60,6 +62,8 @@ pub struct Link {
     pub constant: f64,
     /// `b`: linear part, m, in the coordinates of the particle's [`Site`](super::tiles::Site).
     pub linear: DVec2,
+    /// Whether all carriers lie to one side, beyond a rim: a linear field could only be extrapolated.
+    pub is_one_sided: bool,
 }
 
 impl Link {
@@ -78,8 +82,10 @@ impl Link {
         let mean = first / sum;
         let slope = -(plane_inverse(second - plane_outer(sum, mean)) * first);
         let lowest = hits.iter().map(|hit| 1.0 + slope.dot(hit.along - mean)).fold(f64::INFINITY, f64::min);
-        let slope = if lowest < 0.0 { slope / (1.0 - lowest) } else { slope };
-        Self { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum }
+        if lowest < 0.0 {
+            return Self { constant: 1.0 / sum, linear: DVec2::ZERO, is_one_sided: true };
+        }
+        Self { constant: (1.0 - slope.dot(mean)) / sum, linear: slope / sum, is_one_sided: false }
     }
 
     /// The weight of a carrier in reach.

@@ -20,7 +20,11 @@ use super::normal_motion::NormalMotion;
 use super::settings::Melp;
 use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use crate::observe::{Fault, Faults, Observables};
+use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
+use crate::operators::pair_system::PairSystem;
+use crate::operators::stencil::Stencil;
 use crate::rows::columns_mut;
+use crate::rows::reduce::ordered_sum;
 use crate::stage::Stage;
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
@@ -29,10 +33,6 @@ use froth_components::film::{MeanCurvature, SurfaceTension, Surfactant, Thicknes
 use froth_components::kind::EulerianParticle;
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
-use crate::operators::pair_system::PairSystem;
-use crate::operators::stencil::Stencil;
-use crate::rows::reduce::ordered_sum;
 use froth_components::motion::{Normal, Position};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -141,9 +141,8 @@ pub fn solve_marangoni(
     let surfactant = surfactant.bypass_change_detection();
     let tension = tension.bypass_change_detection();
     let step = clock.step_length;
-    let stretching: Vec<f64> = (0..positions.len())
-        .map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step)
-        .collect();
+    let stretching: Vec<f64> =
+        (0..positions.len()).map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step).collect();
     let problem = MarangoniProblem {
         stencil: &stencil.0,
         positions,

@@ -8,21 +8,21 @@
 //! Deng 2022, Algorithm 7, §4.8 (moving least squares). DEVIATION: blended quadratics are smooth between particles and
 //! need no solve per particle.
 
+use super::links::Carriers;
 use super::state::FilmStencil;
+use super::tiles::{PIECE, Rows, Tile};
 use crate::observe::{Fault, Faults};
+use crate::operators::quadratic::height_above;
+use crate::operators::tangent::{MinimalRotation, tangential};
 use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
-use froth_components::kind::{EulerianParticle, LagrangianParticle};
-use froth_components::lamella::Lamellae;
-use super::links::Carriers;
-use super::tiles::{PIECE, Rows, Tile};
-use crate::operators::quadratic::height_above;
-use crate::operators::tangent::{MinimalRotation, tangential};
 use froth_components::film::ShapeOperator;
 use froth_components::identity::InRegion;
+use froth_components::kind::{EulerianParticle, LagrangianParticle};
+use froth_components::lamella::Lamellae;
 use froth_components::lamella::Rim;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use glam::DVec3;
@@ -94,7 +94,8 @@ impl Projector {
         rim: impl Fn(InRegion) -> Option<Rim>,
     ) -> usize {
         let MovingMaterial { positions, normals, velocities, gradients, regions } = material;
-        let moved = |l: usize| confined(rim(regions[l]), drifted(positions[l].0, velocities[l].0, gradients[l].0, step));
+        let moved =
+            |l: usize| confined(rim(regions[l]), drifted(positions[l].0, velocities[l].0, gradients[l].0, step));
         self.places.clear();
         self.places.extend((0..positions.len()).map(|l| Position(moved(l))));
         self.normals.clear();

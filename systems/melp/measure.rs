@@ -10,22 +10,24 @@
 //! Deng 2022, Algorithm 2, Eqs 9 and 11 (sign corrected). DEVIATION: thickness from the dual area (8 % off with the
 //! paper's at walls, 0.3 % so) and from the ratio to the surfactant; no evolution of thickness on L (Eq. 8).
 
+use super::gather::gather_scalar;
+use super::links::Carriers;
 use super::state::{FilmStencil, Transfers};
 use crate::observe::Observables;
+use crate::operators::stencil::Stencil;
+use crate::rows::reduce::ordered_sum;
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
-use froth_components::film::{Area, LiquidVolume, MeanCurvature, ShapeOperator, SurfaceTension, Surfactant, SurfactantAmount, Thickness};
+use froth_components::film::{
+    Area, LiquidVolume, MeanCurvature, ShapeOperator, SurfaceTension, Surfactant, SurfactantAmount, Thickness,
+};
 use froth_components::gas::{GasExponent, GasPressure, GasVolume, IdealGas, ReferencePressure, ReferenceVolume};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use super::gather::gather_scalar;
-use super::links::Carriers;
-use crate::operators::stencil::Stencil;
-use crate::rows::reduce::ordered_sum;
 use froth_components::motion::{Normal, Position};
 use glam::DVec3;
 use std::ops::Range;
@@ -37,10 +39,16 @@ pub fn dual_areas(carriers: Carriers) -> Vec<f64> {
     gather_scalar(carriers, carriers.rows(), &mut Vec::new(), |i| areas[i])
 }
 
-/// Volume enclosed by the rows of a closed film, measured from its particles, m^3.
+/// Volume between the film in `rows` and `origin`, measured from its particles, m^3: the enclosed one where the film is
+/// closed, or where a flat ground through `origin` closes it.
 #[must_use]
-pub fn enclosed_volume(positions: &[Position], normals: &[Normal], areas: &[f64], rows: Range<usize>) -> f64 {
-    let origin = positions[rows.start].0;
+pub fn enclosed_volume(
+    positions: &[Position],
+    normals: &[Normal],
+    areas: &[f64],
+    rows: Range<usize>,
+    origin: DVec3,
+) -> f64 {
     let start = rows.start;
     let term = |i: usize| areas[start + i] * (positions[start + i].0 - origin).dot(normals[start + i].0);
     ordered_sum(rows.len(), 0.0, term) / 3.0
@@ -48,10 +56,7 @@ pub fn enclosed_volume(positions: &[Position], normals: &[Normal], areas: &[f64]
 
 /// Measures areas and curvature from the stencil.
 pub fn measure_geometry(
-    mut carriers: Query<
-        (&Position, &Normal, &ShapeOperator, &mut Area, &mut MeanCurvature),
-        With<EulerianParticle>,
-    >,
+    mut carriers: Query<(&Position, &Normal, &ShapeOperator, &mut Area, &mut MeanCurvature), With<EulerianParticle>>,
     walls: Query<&Position, With<BoundaryParticle>>,
     stencil: Res<FilmStencil>,
 ) {
@@ -134,8 +139,9 @@ pub fn measure_pressure(
     let (positions, normals) = columns(&carriers);
     for (film, region) in lamellae.films.iter().zip(&mut regions) {
         let (mut volume, reference_volume, reference_pressure, exponent, mut pressure) = region;
-        if film.rim.is_none() {
-            let measured = enclosed_volume(positions, normals, &stencil.0.areas, film.carriers.clone());
+        if film.encloses_gas() {
+            let rows = film.carriers.clone();
+            let measured = enclosed_volume(positions, normals, &stencil.0.areas, rows, film.volume_origin());
             let share = -(-clock.step_length / VOLUME_MEMORY).exp_m1();
             let follow = share * (measured - volume.0);
             observables.record(&format!("measured_volume_{}", film.region.0), "m^3", measured);

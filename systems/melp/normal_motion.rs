@@ -26,20 +26,21 @@
 //! of the film's share of the inertia.
 
 use super::state::FilmStencil;
+use crate::clock::StepLimits;
+use crate::operators::stencil::Stencil;
+use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
 use froth_components::film::{MeanCurvature, ShapeOperator, SurfaceTension, Thickness};
+use froth_components::gas::IdealGas;
 use froth_components::gas::{GasExponent, GasVolume, ReferencePressure, ReferenceVolume};
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::{Atmosphere, Liquid};
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, NormalSpeed, Velocity};
-use crate::operators::stencil::Stencil;
-use crate::rows::reduce::{ordered_max, ordered_sum};
-use froth_components::gas::IdealGas;
 use froth_components::motion::{Normal, Position};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -47,6 +48,17 @@ use std::ops::Range;
 
 /// Longest substep, in units of `dx / c`. The explicit limit is 1.0 to 1.2.
 pub const SUBSTEP: f64 = 0.4;
+
+/// Most substeps on one frozen geometry: the fastest mode (1.67 c/dx) then turns by less than half a period in a step,
+/// so that what is held over a step cannot feed it.
+pub const SUBSTEPS_PER_GEOMETRY: f64 = 4.0;
+/// Factor on the stiffness `K` within a step, dimensionless.
+///
+/// The next step's geometry answers a displacement by a stiffness that differs from the frozen `K` by a relative `e`
+/// (irregular neighbours turn the normals). Over a step a mode then grows by `1 + e/2 (1 - cos w dt)`: a bubble at rest
+/// rings by itself after half a second where `e > 0`. A `K` stiffer than any real response makes `e < 0`: those modes
+/// are damped instead, slow ones (`w dt << 1`) by `(1/8) w^2 dt` per second, and steps of one substep not at all.
+const STIFFENING: f64 = 1.5;
 
 /// What the normal motion reads; all slices are per carrier.
 #[derive(Clone, Copy)]
@@ -121,17 +133,19 @@ impl NormalForces<'_> {
         if squared_speed > 0.0 { SUBSTEP * self.spacing / squared_speed.sqrt() } else { f64::INFINITY }
     }
 
-    /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for an open film.
+    /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for a film that
+    /// encloses none; `is_free`: no rim holds it, so forces within it balance.
     pub fn advance(
         &self,
         rows: Range<usize>,
         step: f64,
         speeds: &mut [f64],
         gas: Option<&mut EnclosedGas>,
+        is_free: bool,
         motion: &mut NormalMotion,
     ) {
         let count = (step / self.longest_substep(rows.clone())).ceil().clamp(1.0, 1e6) as u32;
-        let film = FrozenFilm::new(self, rows.clone(), step / f64::from(count), gas.is_some());
+        let film = FrozenFilm::new(self, rows.clone(), step / f64::from(count), is_free);
         let mut speeds = FilmState {
             speed: &mut speeds[rows.clone()],
             displacement: &mut motion.displacement[rows.clone()],
@@ -205,7 +219,7 @@ impl<'a> FrozenFilm<'a> {
             let (own, tail) = rest.split_at_mut(forces.stencil.lists.range(i).len());
             let n = forces.normals[i].0;
             for (slot, (j, w)) in own.iter_mut().zip(forces.stencil.pairs(i)) {
-                *slot = w * (forces.tension[i] + forces.tension[j]) * n.dot(forces.normals[j].0);
+                *slot = STIFFENING * w * (forces.tension[i] + forces.tension[j]) * n.dot(forces.normals[j].0);
             }
             rest = tail;
         }
@@ -249,7 +263,8 @@ impl<'a> FrozenFilm<'a> {
             state.speed[k] += self.forces.normals[start + k].0.dot(shift);
             let move_by = d * state.speed[k];
             // The flux through the middle of the move: exact to second order in the displacement.
-            gained += (area + 0.5 * self.forces.stencil.areas[start + k] * self.forces.curvature[start + k] * move_by) * move_by;
+            gained += (area + 0.5 * self.forces.stencil.areas[start + k] * self.forces.curvature[start + k] * move_by)
+                * move_by;
             state.displacement[k] += move_by;
             state.kinetic[k] += 0.5 * state.speed[k] * state.speed[k];
         }
@@ -300,15 +315,20 @@ impl NormalForces<'_> {
             .weighted_offsets(self.positions, i)
             .map(|(j, w, d)| w * (self.tension[i] + self.tension[j]) * d.dot(n))
             .sum();
-        let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, d)| 2.0 * self.tension[i] * w * d.dot(n)).sum();
+        let rim: f64 = self
+            .stencil
+            .wall_pairs(self.positions, self.wall, i)
+            .map(|(w, d)| 2.0 * self.tension[i] * w * d.dot(n))
+            .sum();
         film + rim
     }
 
     /// How the tension on carrier `i` changes with its own displacement, N/m.
     fn diagonal(&self, i: usize) -> f64 {
         let film: f64 = self.stencil.pairs(i).map(|(j, w)| w * (self.tension[i] + self.tension[j])).sum();
-        let rim: f64 = self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
-        4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - film - rim
+        let rim: f64 =
+            self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
+        4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - STIFFENING * (film + rim)
     }
 }
 
@@ -381,8 +401,16 @@ pub fn advance_normal_motion(
             reference_volume: reference_volume.0,
             exponent: exponent.0,
         };
-        let mut gas = film.rim.is_none().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
-        forces.advance(film.carriers.clone(), clock.step_length, &mut state, gas.as_mut(), &mut motion);
+        let mut gas =
+            film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
+        forces.advance(
+            film.carriers.clone(),
+            clock.step_length,
+            &mut state,
+            gas.as_mut(),
+            film.rim.is_none(),
+            &mut motion,
+        );
         if let Some(gas) = gas {
             volume.0 = gas.volume;
         }
@@ -418,4 +446,18 @@ fn tension_gradients(stencil: &Stencil, positions: &[Position], normals: &[Norma
 /// Sum of the squared entries: of a shape operator, the sum of squared principal curvatures.
 fn squared_norm(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|v| v * v).sum()
+}
+
+/// Proposes the longest step that one frozen geometry can serve.
+pub fn limit_step_by_tension(
+    carriers: Query<(&SurfaceTension, &Thickness), With<EulerianParticle>>,
+    lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
+    mut limits: ResMut<StepLimits>,
+) {
+    let (tension, thickness) = columns(&carriers);
+    let inertia = Inertia { density: liquid.density, lamellae: &lamellae }.per_area(thickness);
+    let squared_speed = ordered_max(inertia.len(), 0.0, |i| 2.0 * tension[i].0 / inertia[i]);
+    let substep = SUBSTEP * lamellae.spacing / squared_speed.sqrt();
+    limits.propose("tension", SUBSTEPS_PER_GEOMETRY * substep);
 }

@@ -17,10 +17,7 @@ use glam::DVec3;
 
 /// Records area, volumes, pressures, energies and momentum.
 pub fn observe_films(
-    carriers: Query<
-        (&Position, &NormalSpeed, &Area, &SurfaceTension, &Surfactant, &Thickness),
-        With<EulerianParticle>,
-    >,
+    carriers: Query<(&Position, &NormalSpeed, &Area, &SurfaceTension, &Surfactant, &Thickness), With<EulerianParticle>>,
     gases: Query<(&GasVolume, &GasPressure), With<Region>>,
     lamellae: Res<Lamellae>,
     liquid: Res<Liquid>,
@@ -52,7 +49,7 @@ pub fn observe_films(
     observables.record("centre_y", "m", centre.y);
     observables.record("centre_z", "m", centre.z);
     for (film, (volume, pressure)) in lamellae.films.iter().zip(&gases) {
-        if film.rim.is_none() {
+        if film.encloses_gas() {
             let name = |what: &str| format!("{what}_{}", film.region.0);
             observables.record(&name("volume"), "m^3", volume.0);
             observables.record(&name("excess_pressure"), "Pa", pressure.0 - atmosphere.pressure);

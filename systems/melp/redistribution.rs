@@ -121,7 +121,8 @@ impl Spread<'_> {
 
     fn fick(&self, kernel: &Kernel, i: usize) -> DVec3 {
         let x = self.positions[i].0;
-        let film = self.stencil.lists.of(i).iter().map(|&j| (self.stencil.areas[j as usize], self.positions[j as usize].0));
+        let film =
+            self.stencil.lists.of(i).iter().map(|&j| (self.stencil.areas[j as usize], self.positions[j as usize].0));
         let wall_area = self.spacing * self.spacing;
         let wall = self.stencil.wall_lists.of(i).iter().map(|&j| (wall_area, self.wall[j as usize].0));
         let push: DVec3 = film

@@ -8,19 +8,19 @@
 //! # Source
 //! Deng 2022, Algorithm 4, Eqs 16 to 18 (APIC: Jiang 2015).
 
+use super::links::{Carriers, Link};
 use super::settings::Melp;
 use super::state::{FilmStencil, TangentialFlow, Transfers};
+use super::tiles::{PIECE, Rows, Site, Tile};
+use crate::operators::tangent::{nearly_rotated, outer, plane_inverse, plane_outer, tangential};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res};
 use froth_components::film::{LiquidVolume, Surfactant, SurfactantAmount, Thickness};
+use froth_components::identity::InRegion;
 use froth_components::kind::{EulerianParticle, LagrangianParticle};
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
-use super::links::{Carriers, Link};
-use super::tiles::{PIECE, Rows, Site, Tile};
-use crate::operators::tangent::{nearly_rotated, outer, plane_inverse, plane_outer, tangential};
-use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use rayon::prelude::*;
@@ -56,7 +56,14 @@ pub struct Received<'a> {
 }
 
 /// Scatters to every material particle.
-pub fn scatter_all(carriers: Carriers, flow: CarrierFlow, rows: Rows, links: &[Link], blend: Blend, received: Received) {
+pub fn scatter_all(
+    carriers: Carriers,
+    flow: CarrierFlow,
+    rows: Rows,
+    links: &[Link],
+    blend: Blend,
+    received: Received,
+) {
     let kernel = carriers.kernel();
     let Received { velocities, gradients, concentration } = received;
     let outputs = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE));
@@ -103,7 +110,7 @@ impl Taken {
             affine[1] += there * hit.along.y;
             inertia += plane_outer(weight, hit.along);
         }
-        let gradient = if blend.affine { gradient(affine, inertia, site) } else { DMat3::ZERO };
+        let gradient = if blend.affine && !link.is_one_sided { gradient(affine, inertia, site) } else { DMat3::ZERO };
         Self { velocity, change, gradient, concentration }
     }
 }

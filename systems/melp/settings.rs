@@ -13,8 +13,6 @@ pub const TRANSFER_SUPPORT: f64 = 2.5;
 pub struct Melp {
     /// Fraction of the particle spacing that the fastest particle may cross in a step.
     pub cfl: f64,
-    /// Longest step, s.
-    pub maximum_step: f64,
     /// Whether transfers carry velocity gradients (APIC) or not (PIC).
     pub affine: bool,
     /// Part of a material particle's velocity that is its old one plus the carriers' change (FLIP), 0 to 1.
@@ -34,10 +32,9 @@ pub struct Melp {
 impl Melp {
     /// The settings a scene gives.
     #[must_use]
-    pub fn new(authored: &MelpSettings, maximum_step: Option<f64>) -> Self {
+    pub fn new(authored: &MelpSettings) -> Self {
         Self {
             cfl: authored.cfl.si(),
-            maximum_step: maximum_step.unwrap_or(f64::INFINITY),
             affine: authored.transfer == Transfer::Affine,
             flip: authored.flip.si(),
             xsph: authored.xsph.si(),

@@ -41,7 +41,6 @@ pub fn limit_step_by_speed(
     let pushed = ordered_max(accelerations.len(), 0.0, |i| accelerations[i].0.length());
     let pushed = if clock.steps == 0 { pushed.max(FIRST_ACCELERATION) } else { pushed };
     limits.propose("cfl", time_to_cross(melp.cfl * lamellae.spacing, fastest, pushed));
-    limits.propose("maximum_step", melp.maximum_step);
     observables.record("max_speed", "m/s", fastest);
 }
 

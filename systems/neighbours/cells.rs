@@ -74,7 +74,8 @@ impl CellList {
             cell(centre[axis] - reach).max(0)..=cell(centre[axis] + reach).min(self.counts[axis] as isize - 1)
         };
         // Distance from the centre to a cell along an axis.
-        let gap = |axis: usize, cell: isize| (cell as f64 - centre[axis]).max(centre[axis] - (cell + 1) as f64).max(0.0);
+        let gap =
+            |axis: usize, cell: isize| (cell as f64 - centre[axis]).max(centre[axis] - (cell + 1) as f64).max(0.0);
         for z in span(2, reach) {
             let left = reach * reach - gap(2, z).powi(2);
             for y in span(1, reach) {

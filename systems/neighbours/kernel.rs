@@ -76,10 +76,8 @@ mod tests {
         let kernel = Kernel::new(0.3);
         let n = 20_000;
         let dr = 0.3 / f64::from(n);
-        let integral: f64 = (0..n)
-            .map(|i| (f64::from(i) + 0.5) * dr)
-            .map(|r| 2.0 * PI * r * kernel.value(r * r) * dr)
-            .sum();
+        let integral: f64 =
+            (0..n).map(|i| (f64::from(i) + 0.5) * dr).map(|r| 2.0 * PI * r * kernel.value(r * r) * dr).sum();
         assert!((integral - 1.0).abs() < 1e-7, "{integral}");
     }
 

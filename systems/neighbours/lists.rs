@@ -137,8 +137,10 @@ mod tests {
 
     #[test]
     fn lists_agree_with_brute_force() {
-        let points: Vec<Position> =
-            (0..3000).map(|i| f64::from(i) * 0.618).map(|t| Position(DVec3::new(t.sin(), (1.7 * t).cos(), 0.3))).collect();
+        let points: Vec<Position> = (0..3000)
+            .map(|i| f64::from(i) * 0.618)
+            .map(|t| Position(DVec3::new(t.sin(), (1.7 * t).cos(), 0.3)))
+            .collect();
         let lists = NeighbourLists::within(&points, &points, &CellList::build(&points, 0.1), 0.1, |i, j| i != j);
         for (i, p) in points.iter().enumerate().step_by(97) {
             let near = |j: &usize| *j != i && p.0.distance(points[*j].0) < 0.1;

@@ -30,7 +30,9 @@ pub struct SolveInfo {
 
 /// A solve that did not reach its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("no convergence after {iterations} iterations: residual {residual:.2e} of the right-hand side, {tolerance:.2e} wanted")]
+#[error(
+    "no convergence after {iterations} iterations: residual {residual:.2e} of the right-hand side, {tolerance:.2e} wanted"
+)]
 pub struct NotConverged {
     /// Iterations done.
     pub iterations: u32,
@@ -207,7 +209,8 @@ mod tests {
     fn four_times_the_unknowns_take_hardly_more_iterations() {
         let iterations = [32, 64, 128].map(|side| {
             let (lists, places) = square(side);
-            let exact: Vec<f64> = places.iter().map(|p| (0.3 * p.x).sin() + p.y * p.x / f64::from(side * side)).collect();
+            let exact: Vec<f64> =
+                places.iter().map(|p| (0.3 * p.x).sin() + p.y * p.x / f64::from(side * side)).collect();
             error(&lists, &places, &exact, 0.0, StopRule { tolerance: 1e-6, max_iterations: 200 }).1
         });
         assert!(iterations.iter().all(|&n| n < 25), "{iterations:?}");

@@ -60,11 +60,7 @@ impl Multigrid {
     #[must_use]
     pub fn new(system: &PairSystem, places: impl Iterator<Item = DVec3>) -> Self {
         let mut places: Vec<DVec3> = places.collect();
-        let fine = System {
-            lists: system.lists,
-            couplings: &system.couplings,
-            reaction: &system.reaction,
-        };
+        let fine = System { lists: system.lists, couplings: &system.couplings, reaction: &system.reaction };
         let aggregates = fine.aggregates();
         let members = members(&aggregates);
         let mut levels = Vec::new();

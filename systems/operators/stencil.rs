@@ -121,9 +121,8 @@ impl Stencil {
                 }
             });
         });
-        self.wall_lists = NeighbourLists::within(positions, points.wall, wall, radius, |i, j| {
-            regions[i] == points.wall_regions[j]
-        });
+        self.wall_lists =
+            NeighbourLists::within(positions, points.wall, wall, radius, |i, j| regions[i] == points.wall_regions[j]);
     }
 
     /// `a_i = C / sum W`, over carriers and boundary particles of the same sheet.

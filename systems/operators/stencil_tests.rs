@@ -85,7 +85,8 @@ fn the_curvature_force_of_a_sphere_is_two_over_radius_and_sums_to_zero() {
     let stencil = Stencil::build(cloud.points());
     let force = |i: usize| stencil.weighted_offsets(&cloud.positions, i).map(|(_, w, d)| d * w).sum::<DVec3>();
     let total: DVec3 = (0..2000).map(force).sum();
-    let curvature: f64 = (0..2000).map(|i| -force(i).dot(cloud.normals[i].0)).sum::<f64>() / stencil.areas.iter().sum::<f64>();
+    let curvature: f64 =
+        (0..2000).map(|i| -force(i).dot(cloud.normals[i].0)).sum::<f64>() / stencil.areas.iter().sum::<f64>();
     assert!(total.length() < 1e-12);
     assert!((curvature - 2.0).abs() < 2e-3, "{curvature}");
 }

@@ -20,12 +20,7 @@ pub fn ordered_max(count: usize, floor: f64, value: impl Fn(usize) -> f64 + Sync
 }
 
 /// Folds rows in chunks of fixed size and joins the chunks in order.
-pub fn ordered_fold<T>(
-    count: usize,
-    zero: T,
-    step: impl Fn(T, usize) -> T + Sync,
-    join: impl Fn(T, T) -> T,
-) -> T
+pub fn ordered_fold<T>(count: usize, zero: T, step: impl Fn(T, usize) -> T + Sync, join: impl Fn(T, T) -> T) -> T
 where
     T: Copy + Send + Sync,
 {
@@ -33,9 +28,7 @@ where
     if count <= CHUNK {
         return chunk(0..count);
     }
-    let chunks: Vec<T> = (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|c| chunk(c * CHUNK..((c + 1) * CHUNK).min(count)))
-        .collect();
+    let chunks: Vec<T> =
+        (0..count.div_ceil(CHUNK)).into_par_iter().map(|c| chunk(c * CHUNK..((c + 1) * CHUNK).min(count))).collect();
     chunks.into_iter().fold(zero, join)
 }

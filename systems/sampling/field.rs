@@ -63,7 +63,8 @@ impl Extent<'_> {
                 height.iter().map(|h| wave.mean.si() * (1.0 + wave.relative.si() * phase(h))).collect()
             }
             ThicknessField::Gradient(g) => {
-                let linear = self.height(g.direction.unit()).into_iter().map(|h| g.from.si() * (1.0 - h) + g.to.si() * h);
+                let linear =
+                    self.height(g.direction.unit()).into_iter().map(|h| g.from.si() * (1.0 - h) + g.to.si() * h);
                 match g.noise {
                     None => linear.collect(),
                     Some(n) => {

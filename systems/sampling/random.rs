@@ -32,8 +32,10 @@ mod tests {
         let ones: u32 = (0..4096).map(|id| bits(1, id, 0, Use::NoiseSeed).count_ones()).sum();
         assert!((f64::from(ones) / 4096.0 - 32.0).abs() < 0.3);
         let base = bits(1, 2, 3, Use::NoiseSeed);
-        assert!([bits(2, 2, 3, Use::NoiseSeed), bits(1, 3, 3, Use::NoiseSeed), bits(1, 2, 4, Use::NoiseSeed)]
-            .iter()
-            .all(|other| *other != base));
+        assert!(
+            [bits(2, 2, 3, Use::NoiseSeed), bits(1, 3, 3, Use::NoiseSeed), bits(1, 2, 4, Use::NoiseSeed)]
+                .iter()
+                .all(|other| *other != base)
+        );
     }
 }

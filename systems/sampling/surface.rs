@@ -64,9 +64,9 @@ impl Surface {
     /// The surface of `shape`, displaced.
     #[must_use]
     pub fn new(shape: Shape, perturbation: Perturbation) -> Self {
-        let bumps = perturbation.bumps.map(|(bumps, seed)| {
-            (LayeredNoise::new(seed, bumps.frequency.si(), bumps.octaves), bumps.amplitude.si())
-        });
+        let bumps = perturbation
+            .bumps
+            .map(|(bumps, seed)| (LayeredNoise::new(seed, bumps.frequency.si(), bumps.octaves), bumps.amplitude.si()));
         let mode = perturbation.mode.map(|mode| (Harmonic::new(mode.degree, mode.order), mode.amplitude.si()));
         Self { shape, bumps, mode }
     }
@@ -82,7 +82,9 @@ impl Surface {
         match self.shape {
             Shape::Sphere(sphere) => {
                 let (centre, radius) = (sphere.centre.si(), sphere.radius.si());
-                spread::sphere_cap(count, -1.0).map(|n| FilmPoint { position: centre + n * radius, normal: n }).collect()
+                spread::sphere_cap(count, -1.0)
+                    .map(|n| FilmPoint { position: centre + n * radius, normal: n })
+                    .collect()
             }
             Shape::Ellipsoid(ellipsoid) => {
                 let (centre, radii) = (ellipsoid.centre.si(), ellipsoid.radii.si());

@@ -25,6 +25,7 @@ pub(crate) const SCENE: &str = r#"Scene(
     duration: "0.12 s",
     frames_per_second: 100,
     seed: 7,
+    picture: (width: 96, height: 96),
     entities: [
         [
             Sphere(radius: "5 cm"),
@@ -80,17 +81,21 @@ impl Reporter for StopAfter {
     }
 }
 
-/// All bytes of a run that its contract speaks of: the newest checkpoint, the table, the frames.
+/// All bytes of a run that its contract speaks of: the newest checkpoint, the frames, the table, and whatever else is made of them;
+/// not manifest and log, which hold wall times.
 pub(crate) fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let newest = files(&folder.join("checkpoints")).pop_last().expect("a checkpoint");
-    let frames = files(&folder.join("frames"));
-    let table = ("observables.csv".to_owned(), fs::read(folder.join("observables.csv")).unwrap());
-    frames.into_iter().chain([newest, table]).collect()
+    let mut results = files(folder);
+    assert!(results.contains_key("observables.csv"));
+    results.retain(|name, _| !["manifest.json", "run.log"].contains(&name.as_str()));
+    results.extend(files(&folder.join("frames")));
+    results.extend([newest]);
+    results
 }
 
 /// Names and bytes of the files of a folder.
 pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap()).filter(|entry| entry.path().is_file());
     entries.map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())).collect()
 }
 

@@ -1,0 +1,39 @@
+//! The quick laws of `froth verify`, one test each.
+
+use froth::verify::{Effort, LAWS, law};
+
+/// Measures a law and asserts every finding.
+fn assert_law(name: &str) {
+    let law = law(name).unwrap_or_else(|| panic!("there is no law `{name}`"));
+    let findings = (law.measure)(Effort::Quick).unwrap();
+    assert!(!findings.is_empty());
+    let broken: Vec<_> = findings.iter().filter(|finding| !finding.passes()).collect();
+    assert!(broken.is_empty(), "{}: {broken:#?}", law.summary);
+}
+
+macro_rules! laws {
+    ($($(#[$attribute:meta])* $test:ident = $name:literal;)+) => {
+        $($(#[$attribute])* #[test] fn $test() { assert_law($name); })+
+
+        #[test]
+        fn every_law_has_a_test() {
+            let tested = [$($name),+];
+            assert_eq!(LAWS.iter().map(|law| law.name).collect::<Vec<_>>(), tested);
+        }
+    };
+}
+
+laws! {
+    operators_are_exact_for_constants_and_linear_fields_also_at_walls = "operators";
+    spheres_and_ellipsoids_have_their_area_and_curvature = "curvature";
+    transfers_keep_liquid_surfactant_and_momentum = "transfers";
+    redistribution_leaves_the_surface_and_the_thickness_unchanged = "redistribution";
+    the_pressure_in_a_bubble_is_four_sigma_over_its_radius = "young_laplace";
+    a_bubble_breathes_on_the_spring_of_its_gas = "breathing";
+    a_bubble_of_film_mass_rings_at_the_frequencies_of_its_shape = "shape_modes";
+    a_bubble_with_liquid_and_air_rings_slower = "elastic_shape_modes";
+    marangoni_waves_run_at_the_speed_of_their_elasticity = "marangoni_wave";
+    a_drained_film_is_exponential = "drainage";
+    an_uneven_disc_evens_out = "equilibrium_disc";
+    a_bubble_at_rest_stays_at_rest = "resting_bubble";
+}

@@ -11,7 +11,7 @@ use froth_systems::neighbours::cells::CellList;
 use froth_systems::rows::morton::morton_code;
 use froth_systems::sampling::spread::sphere_cap;
 use glam::DVec3;
-use kiddo::{KdTree, SquaredEuclidean};
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 /// Calls of which the fastest counts.
 const CALLS: usize = 3;
@@ -48,10 +48,10 @@ fn report(count: usize, order: &str, method: &str, mut call: impl FnMut() -> (us
 
 /// Number of pairs, and the sum of their squared distances.
 fn by_tree(points: &[Position], reach: f64) -> (usize, f64) {
-    let mut tree: KdTree<f64, 3> = KdTree::with_capacity(points.len());
-    points.iter().zip(0..).for_each(|(p, row)| tree.add(&p.0.to_array(), row));
-    let near = |p: &Position| tree.within_unsorted::<SquaredEuclidean>(&p.0.to_array(), reach * reach);
-    points.iter().flat_map(near).fold((0, 0.0), |(pairs, sum), found| (pairs + 1, sum + found.distance))
+    let raw: Vec<[f64; 3]> = points.iter().map(|p| p.0.to_array()).collect();
+    let tree = ImmutableKdTree::<f64, 3>::new_from_slice(&raw).expect("a tree of finite points");
+    let near = |p: &[f64; 3]| tree.query(p).within::<SquaredEuclidean<f64>>(reach * reach).unsorted().execute();
+    raw.iter().flat_map(near).fold((0, 0.0), |(pairs, sum), found| (pairs + 1, sum + found.distance))
 }
 
 fn by_cells(points: &[Position], reach: f64, width: f64) -> (usize, f64) {

@@ -70,7 +70,8 @@ impl CellList {
         let centre = (point - self.origin) * self.inverse_size;
         let reach = radius * self.inverse_size * (1.0 + 1e-12);
         let span = |axis: usize, reach: f64| {
-            let cell = |place: f64| place.floor().clamp(-1.0, self.counts[axis] as f64) as isize;
+            // The cast rounds down what is not negative.
+            let cell = |place: f64| (place + 1.0).clamp(0.0, (self.counts[axis] + 1) as f64) as isize - 1;
             cell(centre[axis] - reach).max(0)..=cell(centre[axis] + reach).min(self.counts[axis] as isize - 1)
         };
         // Distance from the centre to a cell along an axis.

@@ -9,11 +9,12 @@ use std::ops::Range;
 const CHUNK: usize = 1024;
 
 /// What one chunk of targets found.
-struct Piece<T> {
+struct Piece<T, G> {
     /// Ends of the targets' neighbours in `indices`.
     ends: Vec<usize>,
     indices: Vec<u32>,
     values: Vec<T>,
+    given: Vec<G>,
 }
 
 /// For every target row, the rows of its neighbours.
@@ -51,13 +52,14 @@ impl NeighbourLists {
         Self::collect_beside(targets, |target, found, _: &mut Vec<()>| find(target, found)).0
     }
 
-    /// Lists filled by `find(target, neighbours, values)`, which appends; and the values, in order.
+    /// Lists filled by `find(target, neighbours, values)`, which appends; the values, in order; and what `find` gave
+    /// for each target.
     #[must_use]
-    pub fn collect_beside<T: Copy + Send>(
+    pub fn collect_beside<T: Copy + Send, G: Copy + Send>(
         targets: usize,
-        find: impl Fn(usize, &mut Vec<u32>, &mut Vec<T>) + Sync,
-    ) -> (Self, Vec<T>) {
-        let pieces: Vec<Piece<T>> = (0..targets.div_ceil(CHUNK))
+        find: impl Fn(usize, &mut Vec<u32>, &mut Vec<T>) -> G + Sync,
+    ) -> (Self, Vec<T>, Vec<G>) {
+        let pieces: Vec<Piece<T, G>> = (0..targets.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let rows = chunk * CHUNK..((chunk + 1) * CHUNK).min(targets);
@@ -65,9 +67,10 @@ impl NeighbourLists {
                     ends: Vec::with_capacity(rows.len()),
                     indices: Vec::with_capacity(rows.len() * 32),
                     values: Vec::with_capacity(rows.len() * 32),
+                    given: Vec::with_capacity(rows.len()),
                 };
                 for target in rows {
-                    find(target, &mut piece.indices, &mut piece.values);
+                    piece.given.push(find(target, &mut piece.indices, &mut piece.values));
                     piece.ends.push(piece.indices.len());
                 }
                 piece
@@ -76,18 +79,20 @@ impl NeighbourLists {
         Self::join(targets, &pieces)
     }
 
-    fn join<T: Copy>(targets: usize, pieces: &[Piece<T>]) -> (Self, Vec<T>) {
+    fn join<T: Copy, G: Copy>(targets: usize, pieces: &[Piece<T, G>]) -> (Self, Vec<T>, Vec<G>) {
         let mut offsets = Vec::with_capacity(targets + 1);
         offsets.push(0);
         let mut indices = Vec::with_capacity(pieces.iter().map(|piece| piece.indices.len()).sum());
         let mut values = Vec::with_capacity(pieces.iter().map(|piece| piece.values.len()).sum());
+        let mut given = Vec::with_capacity(targets);
         for piece in pieces {
             let start = indices.len();
             offsets.extend(piece.ends.iter().map(|&end| start + end));
             indices.extend_from_slice(&piece.indices);
             values.extend_from_slice(&piece.values);
+            given.extend_from_slice(&piece.given);
         }
-        (Self { offsets, indices }, values)
+        (Self { offsets, indices }, values, given)
     }
 
     /// Number of targets.

@@ -92,7 +92,6 @@ impl Stencil {
         let wall = CellList::build(points.wall, DENSITY_SUPPORT * points.spacing);
         self.find_cells(points.positions, points.spacing);
         self.find_neighbours(points, &wall);
-        self.measure_areas(points, &wall);
         self.weigh(points);
     }
 
@@ -101,53 +100,38 @@ impl Stencil {
         self.cells.rebuild(positions, CELL * spacing);
     }
 
-    /// Finds pairs and their slopes, which stand in `weights` until [`Stencil::weigh`].
+    /// Finds pairs, their slopes, which stand in `weights` until [`Stencil::weigh`], and areas, in one search.
     fn find_neighbours(&mut self, points: Points, wall: &CellList) {
         let radius = PAIR_SUPPORT * points.spacing;
-        let kernel = Kernel::new(radius);
+        let (pair, density) = (Kernel::new(radius), Kernel::new(DENSITY_SUPPORT * points.spacing));
         let Points { positions, normals, regions, .. } = points;
         let cells = &self.cells;
-        (self.lists, self.weights) = NeighbourLists::collect_beside(positions.len(), |i, found, slopes| {
-            let (place, normal) = (positions[i].0, normals[i].0);
-            cells.for_each_near(place, radius, |j| {
-                let square = place.distance_squared(positions[j].0);
-                if square < radius * radius
-                    && i != j
-                    && regions[i] == regions[j]
-                    && normal.dot(normals[j].0) > SAME_SHEET
-                {
-                    found.push(j as u32);
-                    slopes.push(kernel.slope_over_distance(square));
-                }
+        (self.lists, self.weights, self.areas) =
+            NeighbourLists::collect_beside(positions.len(), |i, found, slopes: &mut Vec<f64>| {
+                let (place, normal, region) = (positions[i].0, normals[i].0, regions[i]);
+                let mut sum = 0.0;
+                cells.for_each_near(place, density.support, |j| {
+                    let square = place.distance_squared(positions[j].0);
+                    let is_near = square < density.support * density.support;
+                    if !is_near || regions[j] != region || normal.dot(normals[j].0) <= SAME_SHEET {
+                        return;
+                    }
+                    let distance = square.sqrt();
+                    sum += density.value_at(distance);
+                    if distance < radius && i != j {
+                        found.push(j as u32);
+                        slopes.push(pair.slope_over_distance_at(distance));
+                    }
+                });
+                wall.for_each_near(place, density.support, |j| {
+                    if points.wall_regions[j] == region {
+                        sum += density.value(place.distance_squared(points.wall[j].0));
+                    }
+                });
+                LATTICE_CONSTANT / sum
             });
-        });
         self.wall_lists =
             NeighbourLists::within(positions, points.wall, wall, radius, |i, j| regions[i] == points.wall_regions[j]);
-    }
-
-    /// `a_i = C / sum W`, over carriers and boundary particles of the same sheet.
-    fn measure_areas(&mut self, points: Points, wall: &CellList) {
-        let radius = DENSITY_SUPPORT * points.spacing;
-        let kernel = Kernel::new(radius);
-        let Points { positions, normals, regions, .. } = points;
-        let density = |i: usize| {
-            let (place, normal) = (positions[i].0, normals[i].0);
-            let mut sum = 0.0;
-            self.cells.for_each_near(place, radius, |j| {
-                let square = place.distance_squared(positions[j].0);
-                if square < radius * radius && regions[i] == regions[j] && normal.dot(normals[j].0) > SAME_SHEET {
-                    sum += kernel.value(square);
-                }
-            });
-            wall.for_each_near(place, radius, |j| {
-                if regions[i] == points.wall_regions[j] {
-                    sum += kernel.value(place.distance_squared(points.wall[j].0));
-                }
-            });
-            sum
-        };
-        let count = positions.len();
-        self.areas = (0..count).into_par_iter().with_min_len(128).map(|i| LATTICE_CONSTANT / density(i)).collect();
     }
 
     fn weigh(&mut self, points: Points) {

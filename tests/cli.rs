@@ -200,3 +200,17 @@ fn a_second_signal_kills() {
     signal(process.id(), "INT");
     assert_eq!(process.wait().unwrap().code(), Some(128 + 2));
 }
+
+#[test]
+fn bench_prints_a_table_per_size_and_writes_its_numbers() {
+    let folder = folder();
+    let arguments =
+        ["bench", "small.ron", "--sizes", "300,600", "--steps", "2", "--warm-up", "0", "--csv", "bench.csv"];
+    let output = output(folder.path(), &arguments);
+    assert_eq!(exit_code(&output), 0, "{}", stderr(&output));
+    assert_eq!(stdout(&output).matches("  whole step").count(), 2, "{}", stdout(&output));
+    let csv = fs::read_to_string(folder.path().join("bench.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert!(lines.iter().all(|fields| fields.len() == 8), "{csv}");
+    assert!(lines.iter().any(|fields| fields[1] == "300" && fields[5] == "Gather"), "{csv}");
+}

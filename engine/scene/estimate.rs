@@ -7,10 +7,11 @@ use froth_components::authored::shape::Shape;
 
 use super::Scene;
 
-/// Memory of one Eulerian particle with its share of neighbour lists and matrices, bytes.
-pub const BYTES_PER_EULERIAN: u64 = 700;
-/// Memory of one Lagrangian particle with its share of neighbour lists, bytes.
-pub const BYTES_PER_LAGRANGIAN: u64 = 650;
+/// Memory of one Eulerian particle with its share of neighbour lists and matrices, bytes. Peak of `froth bench` at 64 000
+/// particles without liquid, rounded up: 2130.
+pub const BYTES_PER_EULERIAN: u64 = 2200;
+/// Memory of one Lagrangian particle, bytes. What 16 of them per Eulerian one add to that peak, rounded up: 594.
+pub const BYTES_PER_LAGRANGIAN: u64 = 600;
 /// Rows of boundary particles along a pinned rim.
 pub const BOUNDARY_ROWS: f64 = 5.0;
 /// Memory assumed where the system does not tell, bytes.

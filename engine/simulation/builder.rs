@@ -128,7 +128,8 @@ impl SimulationBuilder {
     fn begin(self, scene: Scene) -> Result<Simulation, BuildError> {
         let mut simulation = self.prepare(scene)?;
         let discretise = simulation.method.discretise;
-        discretise(&mut simulation.world).map_err(BuildError::Discretise)?;
+        let world = &mut simulation.world;
+        rayon::scope(|_| discretise(world)).map_err(BuildError::Discretise)?;
         Ok(simulation)
     }
 

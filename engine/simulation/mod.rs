@@ -172,7 +172,9 @@ impl Simulation {
             self.is_checked = true;
         }
         self.begin_step(limit);
-        self.plan.run(&mut self.world);
+        let Self { plan, world, .. } = self;
+        // Inside the pool: a loop begun outside it would put this thread to sleep and wake another.
+        rayon::scope(|_| plan.run(world));
         self.world.clear_trackers();
         let faults = self.world.resource::<Faults>().all();
         if !faults.is_empty() {

@@ -114,7 +114,7 @@ pub fn redistribute_carriers(
     }
     lift(&stencil.0, lamellae.spacing, positions, normals, shapes, &moves.displacement);
     refit(&stencil.0, lamellae.spacing, positions, normals, shapes);
-    stencil.0.cells.rebuild(positions, FIT_SUPPORT * lamellae.spacing);
+    stencil.0.find_cells(positions, lamellae.spacing);
 }
 
 /// `q + d . grad q` on every carrier.

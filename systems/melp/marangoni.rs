@@ -21,6 +21,7 @@ use super::settings::Melp;
 use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use crate::observe::{Fault, Faults, Observables};
 use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
+use crate::operators::pair_system::PairSystem;
 use crate::operators::stencil::Stencil;
 use crate::rows::columns_mut;
 use crate::rows::reduce::ordered_sum;
@@ -76,18 +77,13 @@ impl MarangoniProblem<'_> {
         let resistance: Vec<f64> = self.thickness.iter().map(|eta| 0.5 * self.mobility * step * step / eta).collect();
         let reaction: Vec<f64> = stencil.areas.iter().zip(self.gathered).map(|(a, g)| a / g).collect();
         let b = self.right_hand_side();
-        let link = |i: usize, j: usize, w: f64| w * (resistance[i] + resistance[j]);
-        let diagonal: Vec<f64> = (0..stencil.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|i| reaction[i] + stencil.pairs(i).map(|(j, w)| link(i, j, w)).sum::<f64>())
-            .collect();
-        let row =
-            |x: &[f64], i: usize| diagonal[i] * x[i] - stencil.pairs(i).map(|(j, w)| link(i, j, w) * x[j]).sum::<f64>();
+        let coupling = |i: usize, j: usize, k: usize| stencil.weights[k] * (resistance[i] + resistance[j]);
+        let system = PairSystem::new(&stencil.lists, reaction, coupling);
         for film in films {
-            set_constant_mode(film.clone(), &reaction, &b, concentration);
+            set_constant_mode(film.clone(), &system.reaction, &b, concentration);
         }
-        conjugate_gradient::solve(row, &diagonal, &b, concentration, stop, false, work)
+        let places = self.positions.iter().map(|x| x.0);
+        conjugate_gradient::solve(&system, places, &b, concentration, stop, work)
     }
 
     fn right_hand_side(&self) -> Vec<f64> {

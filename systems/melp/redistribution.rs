@@ -17,6 +17,7 @@
 
 use crate::neighbours::kernel::Kernel;
 use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
+use crate::operators::pair_system::PairSystem;
 use crate::operators::quadratic::height_along;
 use crate::operators::stencil::{PAIR_SUPPORT, Stencil};
 use crate::operators::tangent::tangential;
@@ -111,14 +112,10 @@ impl Spread<'_> {
             let mean = ordered_sum(film.len(), 0.0, |k| b[start + k]) / film.len() as f64;
             b[film.clone()].iter_mut().for_each(|v| *v -= mean);
         }
-        let diagonal: Vec<f64> = (0..stencil.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|i| stencil.pairs(i).map(|(_, w)| w).sum())
-            .collect();
-        let row = |x: &[f64], i: usize| diagonal[i] * x[i] - stencil.pairs(i).map(|(j, w)| w * x[j]).sum::<f64>();
+        let system = PairSystem::new(&stencil.lists, vec![0.0; stencil.len()], |_, _, k| stencil.weights[k]);
         let mut potential = vec![0.0; stencil.len()];
-        let solve = conjugate_gradient::solve(row, &diagonal, &b, &mut potential, stop, true, work)?;
+        let places = self.positions.iter().map(|x| x.0);
+        let solve = conjugate_gradient::solve(&system, places, &b, &mut potential, stop, work)?;
         Ok((potential, solve))
     }
 

@@ -20,6 +20,8 @@ use std::ops::Range;
 pub const PIECE: usize = 1024;
 /// Most rows of a tile.
 const LONGEST: usize = 128;
+/// Square of the reach, in its own units, with a margin for single precision.
+const NEARLY_ONE: f32 = 1.0 + 1e-5;
 /// Widest tile along an axis, in spacings.
 const WIDEST: f64 = 2.0;
 
@@ -116,14 +118,16 @@ pub struct Tile {
     /// Rows of the carriers.
     rows: Vec<u32>,
     places: Vec<DVec3>,
-    /// The places again, axis by axis, for the search.
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
+    /// Corner of the tile.
+    origin: DVec3,
+    /// The places again, axis by axis, from the origin in units of the reach: what the search looks through.
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
     normals: Vec<DVec3>,
     /// Whether some carrier may be on another sheet than some row.
     is_mixed: bool,
-    squares: Vec<f64>,
+    squares: Vec<f32>,
     near: Vec<u32>,
     hits: Vec<Hit>,
 }
@@ -148,6 +152,7 @@ impl Tile {
         let (low, high) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         let turned = rows.normals.iter().map(|n| n.0.distance_squared(normal)).fold(0.0, f64::max).sqrt();
         self.clear();
+        self.origin = low;
         carriers.stencil.cells.for_each_in_box(low - reach, high + reach, |row| {
             let place = carriers.positions[row].0;
             let outside = (low - place).max(place - high).max(DVec3::ZERO);
@@ -158,7 +163,7 @@ impl Tile {
                 && agreement + turned > SAME_SHEET
             {
                 self.is_mixed |= agreement - turned <= SAME_SHEET;
-                self.push(row, place, carriers.normals[row].0);
+                self.push(row, place, carriers.normals[row].0, reach);
             }
         });
         self.squares.resize(self.rows.len(), 0.0);
@@ -173,12 +178,13 @@ impl Tile {
         [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(Vec::clear);
     }
 
-    fn push(&mut self, row: usize, place: DVec3, normal: DVec3) {
+    fn push(&mut self, row: usize, place: DVec3, normal: DVec3, reach: f64) {
+        let scaled = ((place - self.origin) / reach).as_vec3();
         self.rows.push(row as u32);
         self.places.push(place);
-        self.x.push(place.x);
-        self.y.push(place.y);
-        self.z.push(place.z);
+        self.x.push(scaled.x);
+        self.y.push(scaled.y);
+        self.z.push(scaled.z);
         self.normals.push(normal);
     }
 
@@ -203,18 +209,20 @@ impl Tile {
     }
 
     /// Puts the slots of the carriers in reach of a row in front of `near`; their number.
+    ///
+    /// Single precision decides, with a margin: a carrier just out of reach may be among them, where kernels vanish.
     #[inline]
     fn find_near(&mut self, kernel: &Kernel, place: DVec3, normal: DVec3) -> usize {
-        let Self { x, y, z, squares, near, normals, .. } = self;
+        let Self { origin, x, y, z, squares, near, normals, .. } = self;
+        let place = ((place - *origin) / kernel.support).as_vec3();
         for (((square, x), y), z) in squares.iter_mut().zip(&*x).zip(&*y).zip(&*z) {
             let (dx, dy, dz) = (x - place.x, y - place.y, z - place.z);
             *square = dx * dx + dy * dy + dz * dz;
         }
-        let reach = kernel.support * kernel.support;
         let mut count = 0;
         for (slot, square) in squares.iter().enumerate() {
             near[count] = slot as u32;
-            count += usize::from(*square < reach);
+            count += usize::from(*square < NEARLY_ONE);
         }
         if self.is_mixed {
             let mut kept = 0;
@@ -239,7 +247,8 @@ impl Tile {
         let count = self.find_near(kernel, place, normal);
         for &slot in &self.near[..count] {
             let k = slot as usize;
-            visit(self.rows[k] as usize, self.places[k] - place, kernel.value(self.squares[k]));
+            let r = self.places[k] - place;
+            visit(self.rows[k] as usize, r, kernel.value(r.length_squared()));
         }
     }
 
@@ -247,11 +256,11 @@ impl Tile {
     #[inline]
     pub fn find_hits(&mut self, kernel: &Kernel, site: &Site) {
         let count = self.find_near(kernel, site.place, site.normal);
-        let Self { places, squares, near, hits, .. } = self;
+        let Self { places, near, hits, .. } = self;
         hits.clear();
         hits.extend(near[..count].iter().map(|&slot| {
-            let k = slot as usize;
-            Hit { slot, kernel: kernel.value(squares[k]), along: site.along(places[k] - site.place) }
+            let r = places[slot as usize] - site.place;
+            Hit { slot, kernel: kernel.value(r.length_squared()), along: site.along(r) }
         }));
     }
 }

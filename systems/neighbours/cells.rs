@@ -1,4 +1,4 @@
-//! A cell list: points sorted into the cells of a uniform grid, so that all points near a place are in 27 cells.
+//! A cell list: points sorted into the cells of a uniform grid, so that all points near a place are in a few cells.
 
 use froth_components::motion::Position;
 use glam::DVec3;
@@ -60,12 +60,36 @@ impl CellList {
         (place[2] as usize * self.counts[1] + place[1] as usize) * self.counts[0] + place[0] as usize
     }
 
-    /// Calls `visit` with every row in the 27 cells around `point`: all rows within one cell size, and more.
+    /// Calls `visit` with every row in the cells that the ball around `point` touches: all rows within `radius`, and more.
     /// The order is fixed by the grid.
     #[inline]
-    pub fn for_each_near(&self, point: DVec3, visit: impl FnMut(usize)) {
-        let one = DVec3::splat(1.0 / self.inverse_size);
-        self.for_each_in_box(point - one, point + one, visit);
+    pub fn for_each_near(&self, point: DVec3, radius: f64, mut visit: impl FnMut(usize)) {
+        if self.members.is_empty() {
+            return;
+        }
+        let centre = (point - self.origin) * self.inverse_size;
+        let reach = radius * self.inverse_size * (1.0 + 1e-12);
+        let span = |axis: usize, reach: f64| {
+            // The cast rounds down what is not negative.
+            let cell = |place: f64| (place + 1.0).clamp(0.0, (self.counts[axis] + 1) as f64) as isize - 1;
+            cell(centre[axis] - reach).max(0)..=cell(centre[axis] + reach).min(self.counts[axis] as isize - 1)
+        };
+        // Distance from the centre to a cell along an axis.
+        let gap =
+            |axis: usize, cell: isize| (cell as f64 - centre[axis]).max(centre[axis] - (cell + 1) as f64).max(0.0);
+        for z in span(2, reach) {
+            let left = reach * reach - gap(2, z).powi(2);
+            for y in span(1, reach) {
+                let left = left - gap(1, y).powi(2);
+                let across = span(0, left.max(0.0).sqrt());
+                if left < 0.0 || across.is_empty() {
+                    continue;
+                }
+                let start = self.starts[self.index([*across.start(), y, z])] as usize;
+                let end = self.starts[self.index([*across.end(), y, z]) + 1] as usize;
+                self.members[start..end].iter().for_each(|&row| visit(row as usize));
+            }
+        }
     }
 
     /// Calls `visit` with every row in the cells that the box from `low` to `high` touches: all rows in the box, and more.
@@ -124,14 +148,18 @@ mod tests {
             raw in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 1..60),
             query in prop::array::uniform3(-1.5..1.5f64),
             size in 0.05..0.8f64,
+            radius in 0.02..1.0f64,
         ) {
             let points: Vec<Position> = raw.iter().map(|&p| Position(DVec3::from_array(p))).collect();
             let query = DVec3::from_array(query);
-            let mut seen = vec![0; points.len()];
-            CellList::build(&points, size).for_each_near(query, |row| seen[row] += 1);
+            let list = CellList::build(&points, size);
+            let (mut near, mut boxed) = (vec![0; points.len()], vec![0; points.len()]);
+            list.for_each_near(query, radius, |row| near[row] += 1);
+            list.for_each_in_box(query - radius, query + radius, |row| boxed[row] += 1);
             for (row, point) in points.iter().enumerate() {
-                prop_assert!(seen[row] <= 1);
-                prop_assert!(seen[row] == 1 || point.0.distance(query) > size);
+                prop_assert!(near[row] <= 1 && boxed[row] <= 1);
+                prop_assert!(near[row] == 1 || point.0.distance(query) > radius);
+                prop_assert!(boxed[row] == 1 || point.0.distance(query) > radius);
             }
         }
     }

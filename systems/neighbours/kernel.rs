@@ -32,23 +32,30 @@ impl Kernel {
     #[must_use]
     #[inline]
     pub fn value(&self, distance_squared: f64) -> f64 {
-        let q = distance_squared.sqrt() * self.inverse;
-        if q >= 1.0 {
-            return 0.0;
-        }
-        let t = (1.0 - q) * (1.0 - q);
-        self.scale * t * t * (1.0 + 4.0 * q)
+        self.value_at(distance_squared.sqrt())
+    }
+
+    /// `W(r)` in 1/m^2.
+    #[must_use]
+    #[inline]
+    pub fn value_at(&self, distance: f64) -> f64 {
+        let q = distance * self.inverse;
+        let t = (1.0 - q).max(0.0);
+        self.scale * (t * t) * (t * t) * (1.0 + 4.0 * q)
     }
 
     /// `g(r) = -W'(r)/r` in 1/m^4, for the squared distance `r^2`. Finite at `r = 0`.
     #[must_use]
     #[inline]
     pub fn slope_over_distance(&self, distance_squared: f64) -> f64 {
-        let q = distance_squared.sqrt() * self.inverse;
-        if q >= 1.0 {
-            return 0.0;
-        }
-        let t = 1.0 - q;
+        self.slope_over_distance_at(distance_squared.sqrt())
+    }
+
+    /// `g(r) = -W'(r)/r` in 1/m^4. Finite at `r = 0`.
+    #[must_use]
+    #[inline]
+    pub fn slope_over_distance_at(&self, distance: f64) -> f64 {
+        let t = (1.0 - distance * self.inverse).max(0.0);
         20.0 * self.scale * self.inverse * self.inverse * t * t * t
     }
 }

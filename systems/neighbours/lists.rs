@@ -3,9 +3,19 @@
 use super::cells::CellList;
 use froth_components::motion::Position;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Targets per parallel piece of work.
 const CHUNK: usize = 1024;
+
+/// What one chunk of targets found.
+struct Piece<T, G> {
+    /// Ends of the targets' neighbours in `indices`.
+    ends: Vec<usize>,
+    indices: Vec<u32>,
+    values: Vec<T>,
+    given: Vec<G>,
+}
 
 /// For every target row, the rows of its neighbours.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +38,7 @@ impl NeighbourLists {
     ) -> Self {
         Self::collect(targets.len(), |target, found| {
             let place = targets[target].0;
-            cells.for_each_near(place, |source| {
+            cells.for_each_near(place, radius, |source| {
                 if place.distance_squared(sources[source].0) < radius * radius && keep(target, source) {
                     found.push(source as u32);
                 }
@@ -39,32 +49,50 @@ impl NeighbourLists {
     /// Lists filled by `find(target, neighbours)`, which appends.
     #[must_use]
     pub fn collect(targets: usize, find: impl Fn(usize, &mut Vec<u32>) + Sync) -> Self {
-        let pieces: Vec<(Vec<u32>, Vec<u32>)> = (0..targets.div_ceil(CHUNK))
+        Self::collect_beside(targets, |target, found, _: &mut Vec<()>| find(target, found)).0
+    }
+
+    /// Lists filled by `find(target, neighbours, values)`, which appends; the values, in order; and what `find` gave
+    /// for each target.
+    #[must_use]
+    pub fn collect_beside<T: Copy + Send, G: Copy + Send>(
+        targets: usize,
+        find: impl Fn(usize, &mut Vec<u32>, &mut Vec<T>) -> G + Sync,
+    ) -> (Self, Vec<T>, Vec<G>) {
+        let pieces: Vec<Piece<T, G>> = (0..targets.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let rows = chunk * CHUNK..((chunk + 1) * CHUNK).min(targets);
-                let mut ends = Vec::with_capacity(rows.len());
-                let mut found = Vec::with_capacity(rows.len() * 32);
+                let mut piece = Piece {
+                    ends: Vec::with_capacity(rows.len()),
+                    indices: Vec::with_capacity(rows.len() * 32),
+                    values: Vec::with_capacity(rows.len() * 32),
+                    given: Vec::with_capacity(rows.len()),
+                };
                 for target in rows {
-                    find(target, &mut found);
-                    ends.push(found.len() as u32);
+                    piece.given.push(find(target, &mut piece.indices, &mut piece.values));
+                    piece.ends.push(piece.indices.len());
                 }
-                (ends, found)
+                piece
             })
             .collect();
         Self::join(targets, &pieces)
     }
 
-    fn join(targets: usize, pieces: &[(Vec<u32>, Vec<u32>)]) -> Self {
+    fn join<T: Copy, G: Copy>(targets: usize, pieces: &[Piece<T, G>]) -> (Self, Vec<T>, Vec<G>) {
         let mut offsets = Vec::with_capacity(targets + 1);
         offsets.push(0);
-        let mut indices = Vec::with_capacity(pieces.iter().map(|(_, found)| found.len()).sum());
-        for (ends, found) in pieces {
+        let mut indices = Vec::with_capacity(pieces.iter().map(|piece| piece.indices.len()).sum());
+        let mut values = Vec::with_capacity(pieces.iter().map(|piece| piece.values.len()).sum());
+        let mut given = Vec::with_capacity(targets);
+        for piece in pieces {
             let start = indices.len();
-            offsets.extend(ends.iter().map(|&end| start + end as usize));
-            indices.extend_from_slice(found);
+            offsets.extend(piece.ends.iter().map(|&end| start + end));
+            indices.extend_from_slice(&piece.indices);
+            values.extend_from_slice(&piece.values);
+            given.extend_from_slice(&piece.given);
         }
-        Self { offsets, indices }
+        (Self { offsets, indices }, values, given)
     }
 
     /// Number of targets.
@@ -79,10 +107,23 @@ impl NeighbourLists {
         self.len() == 0
     }
 
+    /// Cuts `values`, which stand beside `indices`, into pieces of whole rows: the rows and their values.
+    pub fn pieces_mut<'a, T>(&self, values: &'a mut [T]) -> Vec<(Range<usize>, &'a mut [T])> {
+        let mut pieces = Vec::with_capacity(self.len().div_ceil(CHUNK));
+        let mut rest = values;
+        for start in (0..self.len()).step_by(CHUNK) {
+            let rows = start..(start + CHUNK).min(self.len());
+            let (piece, tail) = rest.split_at_mut(self.offsets[rows.end] - self.offsets[start]);
+            pieces.push((rows, piece));
+            rest = tail;
+        }
+        pieces
+    }
+
     /// Where target `row`'s neighbours stand in [`NeighbourLists::indices`] and in arrays of weights beside it.
     #[must_use]
     #[inline]
-    pub fn range(&self, row: usize) -> std::ops::Range<usize> {
+    pub fn range(&self, row: usize) -> Range<usize> {
         self.offsets[row]..self.offsets[row + 1]
     }
 

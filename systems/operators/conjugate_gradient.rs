@@ -1,16 +1,19 @@
-//! Conjugate gradients with a diagonal preconditioner, with the same bits for any number of threads.
+//! Conjugate gradients preconditioned by [`multigrid`](super::multigrid), with the same bits for any number of threads.
 //!
 //! # Source
 //! Hestenes and Stiefel 1952. The relaxed Jacobi iteration of Deng 2022, §4.4.2 needs 20 to 500 times more sweeps at
 //! physical stiffness.
 
+use super::multigrid::Multigrid;
+use super::pair_system::PairSystem;
 use crate::rows::reduce::ordered_sum;
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
-    /// Largest allowed `|r| / |b|`, dimensionless, in the preconditioned norm `sqrt(r . r/diag)`.
+    /// Largest allowed `|r| / |b|`, dimensionless, in the norm `sqrt(r . r/diag)`.
     pub tolerance: f64,
     /// Most iterations before giving up.
     pub max_iterations: u32,
@@ -43,70 +46,97 @@ pub struct NotConverged {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     residual: Vec<f64>,
+    corrected: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
 }
 
-/// Solves `A x = b` for symmetric positive (semi)definite `A`, starting from `x`.
+/// Solves `A x = b`, starting from `x`. `places` are where the unknowns stand; the preconditioner uses them.
 ///
-/// `row(x, i)` is the `i`-th entry of `A x`; `diagonal[i] > 0`. If `singular`, constants are `A`'s kernel: `b` must sum
-/// to zero, and the part of the residual along constants is removed in every iteration.
+/// If there is no reaction, constants are `A`'s kernel: `b` must sum to zero, and the part of the residual along
+/// constants is removed in every iteration.
 ///
 /// # Errors
 /// [`NotConverged`] with the residual reached.
 pub fn solve(
-    row: impl Fn(&[f64], usize) -> f64 + Sync,
-    diagonal: &[f64],
+    system: &PairSystem,
+    places: impl Iterator<Item = DVec3>,
     b: &[f64],
     x: &mut [f64],
     stop: StopRule,
-    singular: bool,
     work: &mut Workspace,
 ) -> Result<SolveInfo, NotConverged> {
-    let count = b.len();
-    let Workspace { residual, direction, image } = work;
-    for vector in [&mut *residual, &mut *direction, &mut *image] {
-        vector.resize(count, 0.0);
+    let is_singular = system.reaction.iter().all(|m| *m == 0.0);
+    work.begin(system, b, x, is_singular);
+    let whole = size(system, b);
+    let failed = |iterations, residual| NotConverged { iterations, residual, tolerance: stop.tolerance };
+    let ratio = |square: f64| if square > 0.0 { (square / whole).sqrt() } else { square };
+    let mut info = SolveInfo { iterations: 0, residual: ratio(size(system, &work.residual)) };
+    if info.residual <= stop.tolerance {
+        return Ok(info);
     }
-    residual.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, r)| *r = b[i] - row(x, i));
-    if singular {
-        remove_mean(residual);
+    let mut multigrid = Multigrid::new(system, places);
+    let mut rho = 0.0;
+    while info.residual > stop.tolerance {
+        if info.iterations == stop.max_iterations {
+            return Err(failed(info.iterations, info.residual));
+        }
+        multigrid.apply(system, &work.residual, &mut work.corrected);
+        rho = work.turn(rho);
+        let curvature = work.curvature(system);
+        if !(rho > 0.0 && curvature > 0.0 && (rho / curvature).is_finite()) {
+            return Err(failed(info.iterations, f64::NAN));
+        }
+        work.step(rho / curvature, x, is_singular);
+        info = SolveInfo { iterations: info.iterations + 1, residual: ratio(size(system, &work.residual)) };
     }
-    direction.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, p)| *p = residual[i] / diagonal[i]);
-    let whole = ordered_sum(count, 0.0, |i| b[i] * b[i] / diagonal[i]);
-    let mut rho = ordered_sum(count, 0.0, |i| residual[i] * direction[i]);
-    let mut iterations = 0;
-    let ratio = |rho: f64| if rho > 0.0 { (rho / whole).sqrt() } else { rho };
-    while ratio(rho) > stop.tolerance {
-        if iterations == stop.max_iterations {
-            return Err(NotConverged { iterations, residual: ratio(rho), tolerance: stop.tolerance });
+    if info.residual.is_finite() { Ok(info) } else { Err(failed(info.iterations, f64::NAN)) }
+}
+
+impl Workspace {
+    /// The residual of `x`; no direction yet.
+    fn begin(&mut self, system: &PairSystem, b: &[f64], x: &[f64], is_singular: bool) {
+        for vector in [&mut self.residual, &mut self.corrected, &mut self.direction, &mut self.image] {
+            vector.clear();
+            vector.resize(b.len(), 0.0);
         }
-        iterations += 1;
-        image.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, q)| *q = row(direction, i));
-        let curvature = ordered_sum(count, 0.0, |i| direction[i] * image[i]);
-        let step = rho / curvature;
-        if !(curvature > 0.0 && step.is_finite()) {
-            return Err(NotConverged { iterations, residual: f64::NAN, tolerance: stop.tolerance });
+        let residual = self.residual.par_iter_mut().enumerate().with_min_len(512);
+        residual.for_each(|(i, r)| *r = b[i] - system.row(x, i));
+        if is_singular {
+            remove_mean(&mut self.residual);
         }
-        x.par_iter_mut().zip(&*direction).with_min_len(2048).for_each(|(x, p)| *x += step * p);
-        residual.par_iter_mut().zip(&*image).with_min_len(2048).for_each(|(r, q)| *r -= step * q);
-        if singular {
+    }
+
+    /// The next direction, given `r . z` of the iteration before, 0 for none; gives the new one.
+    fn turn(&mut self, rho: f64) -> f64 {
+        let Self { residual, corrected, direction, .. } = self;
+        let next = ordered_sum(residual.len(), 0.0, |i| residual[i] * corrected[i]);
+        let turn = if rho > 0.0 { next / rho } else { 0.0 };
+        direction.par_iter_mut().zip(&*corrected).with_min_len(4096).for_each(|(p, z)| *p = z + turn * *p);
+        next
+    }
+
+    /// `p . A p`, leaving `A p` in the image.
+    fn curvature(&mut self, system: &PairSystem) -> f64 {
+        let Self { direction, image, .. } = self;
+        image.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, q)| *q = system.row(direction, i));
+        ordered_sum(direction.len(), 0.0, |i| direction[i] * image[i])
+    }
+
+    /// Goes `length` along the direction.
+    fn step(&mut self, length: f64, x: &mut [f64], is_singular: bool) {
+        let Self { residual, direction, image, .. } = self;
+        x.par_iter_mut().zip(&*direction).with_min_len(4096).for_each(|(x, p)| *x += length * p);
+        residual.par_iter_mut().zip(&*image).with_min_len(4096).for_each(|(r, q)| *r -= length * q);
+        if is_singular {
             remove_mean(residual);
         }
-        let next = ordered_sum(count, 0.0, |i| residual[i] * residual[i] / diagonal[i]);
-        let turn = next / rho;
-        rho = next;
-        direction
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(2048)
-            .for_each(|(i, p)| *p = residual[i] / diagonal[i] + turn * *p);
     }
-    if rho.is_finite() {
-        Ok(SolveInfo { iterations, residual: ratio(rho) })
-    } else {
-        Err(NotConverged { iterations, residual: f64::NAN, tolerance: stop.tolerance })
-    }
+}
+
+/// `v . v/diag`.
+fn size(system: &PairSystem, v: &[f64]) -> f64 {
+    ordered_sum(v.len(), 0.0, |i| v[i] * v[i] / system.diagonal[i])
 }
 
 fn remove_mean(values: &mut [f64]) {
@@ -118,41 +148,82 @@ fn remove_mean(values: &mut [f64]) {
 mod tests {
     use super::*;
 
-    fn path_laplacian(x: &[f64], i: usize) -> f64 {
-        let near = |j: Option<usize>| j.and_then(|j| x.get(j)).map_or(0.0, |xj| x[i] - xj);
-        near(i.checked_sub(1)) + near(Some(i + 1))
+    use crate::neighbours::lists::NeighbourLists;
+
+    /// Rows on a line, each coupled to the next.
+    fn path(count: usize) -> NeighbourLists {
+        NeighbourLists::collect(count, |i, found| {
+            found.extend(i.checked_sub(1).map(|j| j as u32));
+            found.extend((i + 1 < count).then_some(i as u32 + 1));
+        })
     }
+
+    /// Solves for the image of `exact` under couplings 1 and the given reaction; the worst error but for a constant.
+    fn error(lists: &NeighbourLists, places: &[DVec3], exact: &[f64], reaction: f64, stop: StopRule) -> (f64, u32) {
+        let system = PairSystem::new(lists, vec![reaction; exact.len()], |_, _, _| 1.0);
+        let b: Vec<f64> = (0..exact.len()).map(|i| system.row(exact, i)).collect();
+        let mut x = vec![0.0; exact.len()];
+        let work = &mut Workspace::default();
+        let info = solve(&system, places.iter().copied(), &b, &mut x, stop, work).expect("converges");
+        let shift = if reaction > 0.0 { 0.0 } else { x[0] - exact[0] };
+        (x.iter().zip(exact).map(|(a, b)| (a - b - shift).abs()).fold(0.0, f64::max), info.iterations)
+    }
+
+    fn on_a_line(count: u32) -> Vec<DVec3> {
+        (0..count).map(|i| DVec3::X * f64::from(i)).collect()
+    }
+
+    const TIGHT: StopRule = StopRule { tolerance: 1e-12, max_iterations: 200 };
 
     #[test]
     fn a_shifted_path_laplacian_is_solved() {
-        let exact: Vec<f64> = (0..50).map(|i| f64::from(i * i % 17)).collect();
-        let row = |x: &[f64], i: usize| path_laplacian(x, i) + 0.1 * x[i];
-        let b: Vec<f64> = (0..50).map(|i| row(&exact, i)).collect();
-        let mut x = vec![0.0; 50];
-        let stop = StopRule { tolerance: 1e-12, max_iterations: 200 };
-        let info = solve(row, &[2.1; 50], &b, &mut x, stop, false, &mut Workspace::default()).expect("converges");
-        assert!(info.iterations <= 60);
-        assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-9));
+        let exact: Vec<f64> = (0..500).map(|i| f64::from(i * i % 17)).collect();
+        let (error, iterations) = error(&path(500), &on_a_line(500), &exact, 0.1, TIGHT);
+        assert!(error < 1e-9 && iterations < 40, "{error:e} {iterations}");
     }
 
     #[test]
     fn a_singular_system_is_solved_up_to_a_constant() {
-        let exact: Vec<f64> = (0..50).map(|i| f64::from(i % 7)).collect();
-        let b: Vec<f64> = (0..50).map(|i| path_laplacian(&exact, i)).collect();
-        let mut x = vec![0.0; 50];
-        let stop = StopRule { tolerance: 1e-12, max_iterations: 200 };
-        solve(path_laplacian, &[2.0; 50], &b, &mut x, stop, true, &mut Workspace::default()).expect("converges");
-        let shift = x[0] - exact[0];
-        assert!(x.iter().zip(&exact).all(|(a, b)| (a - b - shift).abs() < 1e-9));
+        let exact: Vec<f64> = (0..500).map(|i| f64::from(i % 7)).collect();
+        let (error, iterations) = error(&path(500), &on_a_line(500), &exact, 0.0, TIGHT);
+        assert!(error < 1e-7 && iterations < 60, "{error:e} {iterations}");
+    }
+
+    /// A square of `side` by `side` rows, each coupled to all within three steps.
+    fn square(side: i32) -> (NeighbourLists, Vec<DVec3>) {
+        let place = |i: usize| (i as i32 % side, i as i32 / side);
+        let lists = NeighbourLists::collect((side * side) as usize, |i, found| {
+            let (x, y) = place(i);
+            for (dx, dy) in (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| (dx, dy))) {
+                let inside = (0..side).contains(&(x + dx)) && (0..side).contains(&(y + dy));
+                if inside && (1..=9).contains(&(dx * dx + dy * dy)) {
+                    found.push(((y + dy) * side + x + dx) as u32);
+                }
+            }
+        });
+        let places = (0..(side * side) as usize).map(place).map(|(x, y)| DVec3::new(x.into(), y.into(), 0.0));
+        (lists, places.collect())
+    }
+
+    #[test]
+    fn four_times_the_unknowns_take_hardly_more_iterations() {
+        let iterations = [32, 64, 128].map(|side| {
+            let (lists, places) = square(side);
+            let exact: Vec<f64> =
+                places.iter().map(|p| (0.3 * p.x).sin() + p.y * p.x / f64::from(side * side)).collect();
+            error(&lists, &places, &exact, 0.0, StopRule { tolerance: 1e-6, max_iterations: 200 }).1
+        });
+        assert!(iterations.iter().all(|&n| n < 25), "{iterations:?}");
     }
 
     #[test]
     fn an_unreachable_tolerance_is_an_error_with_numbers() {
-        let stop = StopRule { tolerance: 1e-12, max_iterations: 3 };
-        let row = |x: &[f64], i: usize| path_laplacian(x, i) + 0.1 * x[i];
-        let mut b = [0.0; 50];
+        let lists = path(500);
+        let system = PairSystem::new(&lists, vec![1e-6; 500], |_, _, _| 1.0);
+        let mut b = [0.0; 500];
         b[0] = 1.0;
-        let failed = solve(row, &[2.1; 50], &b, &mut [0.0; 50], stop, false, &mut Workspace::default());
+        let (places, stop) = (on_a_line(500), StopRule { tolerance: 1e-12, max_iterations: 3 });
+        let failed = solve(&system, places.into_iter(), &b, &mut [0.0; 500], stop, &mut Workspace::default());
         assert_eq!(failed.expect_err("three iterations do not suffice").iterations, 3);
     }
 }

@@ -19,14 +19,14 @@
 //! # Limits
 //! Without boundary particles in the sums (`lap`, `div`) a rim is a natural wall: no flux crosses it.
 
-use super::tangent::{outer, tangential, tangential_inverse};
+use super::tangent::{in_space, plane_inverse, plane_outer, tangential};
 use crate::neighbours::cells::CellList;
 use crate::neighbours::kernel::Kernel;
 use crate::neighbours::lists::NeighbourLists;
 use froth_components::film::Area;
 use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position};
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Support of the density kernel, in particle spacings.
@@ -35,6 +35,8 @@ pub const DENSITY_SUPPORT: f64 = 4.0;
 pub const PAIR_SUPPORT: f64 = 3.0;
 /// Support of quadratic fits, in particle spacings.
 pub const FIT_SUPPORT: f64 = 2.5;
+/// Width of cells, in particle spacings; half the widest search or less.
+const CELL: f64 = 2.0;
 /// `C`: what the density kernel's sum over a uniform triangular lattice, times the area per point, amounts to.
 const LATTICE_CONSTANT: f64 = 1.001_25;
 /// Particles whose normals differ by more than about 78 degrees belong to different sheets (Deng's program: 0.2).
@@ -72,7 +74,7 @@ pub struct Stencil {
     pub wall_weights: Vec<f64>,
     /// `M_i^-1`: inverse of the tangential moment `sum_j w_ij t t^T`, 1/m^2.
     pub inverse_moments: Vec<DMat3>,
-    /// Cells of the carriers, `2.5 dx` wide, for whoever looks them up by place.
+    /// Cells of the carriers, `2 dx` wide, for whoever looks them up by place.
     pub cells: CellList,
 }
 
@@ -87,64 +89,92 @@ impl Stencil {
 
     /// As [`Stencil::build`], in place.
     pub fn rebuild(&mut self, points: Points) {
-        let support = DENSITY_SUPPORT * points.spacing;
-        let wide = CellList::build(points.positions, support);
-        let wall = CellList::build(points.wall, support);
-        self.find_neighbours(points, &wide, &wall);
-        self.areas = areas(points, &wide, &wall);
+        let wall = CellList::build(points.wall, DENSITY_SUPPORT * points.spacing);
+        self.find_cells(points.positions, points.spacing);
+        self.find_neighbours(points, &wall);
         self.weigh(points);
-        self.cells.rebuild(points.positions, FIT_SUPPORT * points.spacing);
     }
 
-    fn find_neighbours(&mut self, points: Points, wide: &CellList, wall: &CellList) {
+    /// Sorts the carriers into cells where they stand; for carriers that moved since the stencil was built.
+    pub fn find_cells(&mut self, positions: &[Position], spacing: f64) {
+        self.cells.rebuild(positions, CELL * spacing);
+    }
+
+    /// Finds pairs, their slopes, which stand in `weights` until [`Stencil::weigh`], and areas, in one search.
+    fn find_neighbours(&mut self, points: Points, wall: &CellList) {
         let radius = PAIR_SUPPORT * points.spacing;
+        let (pair, density) = (Kernel::new(radius), Kernel::new(DENSITY_SUPPORT * points.spacing));
         let Points { positions, normals, regions, .. } = points;
-        self.lists = NeighbourLists::within(positions, positions, wide, radius, |i, j| {
-            i != j && regions[i] == regions[j] && normals[i].0.dot(normals[j].0) > SAME_SHEET
-        });
+        let cells = &self.cells;
+        (self.lists, self.weights, self.areas) =
+            NeighbourLists::collect_beside(positions.len(), |i, found, slopes: &mut Vec<f64>| {
+                let (place, normal, region) = (positions[i].0, normals[i].0, regions[i]);
+                let mut sum = 0.0;
+                cells.for_each_near(place, density.support, |j| {
+                    let square = place.distance_squared(positions[j].0);
+                    let is_near = square < density.support * density.support;
+                    if !is_near || regions[j] != region || normal.dot(normals[j].0) <= SAME_SHEET {
+                        return;
+                    }
+                    let distance = square.sqrt();
+                    sum += density.value_at(distance);
+                    if distance < radius && i != j {
+                        found.push(j as u32);
+                        slopes.push(pair.slope_over_distance_at(distance));
+                    }
+                });
+                wall.for_each_near(place, density.support, |j| {
+                    if points.wall_regions[j] == region {
+                        sum += density.value(place.distance_squared(points.wall[j].0));
+                    }
+                });
+                LATTICE_CONSTANT / sum
+            });
         self.wall_lists =
             NeighbourLists::within(positions, points.wall, wall, radius, |i, j| regions[i] == points.wall_regions[j]);
     }
 
     fn weigh(&mut self, points: Points) {
-        let kernel = Kernel::new(PAIR_SUPPORT * points.spacing);
         let wall_area = points.spacing * points.spacing;
+        let kernel = Kernel::new(PAIR_SUPPORT * points.spacing);
         let slope = |d: DVec3| kernel.slope_over_distance(d.length_squared());
         let scales: Vec<f64> = (0..self.areas.len())
             .into_par_iter()
             .with_min_len(256)
             .map(|i| {
-                let inner = self.offsets(points, i).map(|(j, d)| self.areas[j] * slope(d) * d.length_squared());
+                let pairs = self.weighted_offsets(points.positions, i);
+                let inner = pairs.map(|(j, slope, d)| self.areas[j] * slope * d.length_squared());
                 let outer = self.wall_offsets(points, i).map(|(_, d)| wall_area * slope(d) * d.length_squared());
                 4.0 / (inner.sum::<f64>() + outer.sum::<f64>())
             })
             .collect();
-        let weight =
-            |i: usize, j: usize, d: DVec3| 0.5 * self.areas[i] * self.areas[j] * slope(d) * (scales[i] + scales[j]);
-        let weights = flat_rows(&self.lists, |i| self.offsets(points, i).map(move |(j, d)| weight(i, j, d)));
+        let Self { lists, areas, weights, .. } = self;
+        lists.pieces_mut(weights).into_par_iter().for_each(|(rows, weights)| {
+            let start = lists.offsets[rows.start];
+            for i in rows {
+                let range = lists.range(i);
+                for (weight, &j) in weights[range.start - start..range.end - start].iter_mut().zip(lists.of(i)) {
+                    let j = j as usize;
+                    *weight *= 0.5 * areas[i] * areas[j] * (scales[i] + scales[j]);
+                }
+            }
+        });
         let wall_weight = |i: usize, d: DVec3| self.areas[i] * wall_area * slope(d) * scales[i];
-        let wall_weights =
+        self.wall_weights =
             flat_rows(&self.wall_lists, |i| self.wall_offsets(points, i).map(move |(_, d)| wall_weight(i, d)));
-        self.weights = weights;
-        self.wall_weights = wall_weights;
         self.inverse_moments = self.invert_moments(points);
     }
 
     fn invert_moments(&self, points: Points) -> Vec<DMat3> {
-        let moment = |i: usize| {
-            let n = points.normals[i].0;
-            let moment = self
-                .weighted_offsets(points.positions, i)
-                .map(|(_, w, d)| (w, tangential(d, n)))
-                .fold(DMat3::ZERO, |m, (w, t)| m + outer(w, t, t));
-            tangential_inverse(moment, n)
+        let inverse = |i: usize| {
+            let tangents = points.normals[i].0.any_orthonormal_pair();
+            let mut moment = DMat2::ZERO;
+            for (_, w, d) in self.weighted_offsets(points.positions, i) {
+                moment += plane_outer(w, DVec2::new(d.dot(tangents.0), d.dot(tangents.1)));
+            }
+            in_space(plane_inverse(moment), tangents.into())
         };
-        (0..self.areas.len()).into_par_iter().with_min_len(256).map(moment).collect()
-    }
-
-    fn offsets<'a>(&'a self, points: Points<'a>, i: usize) -> impl Iterator<Item = (usize, DVec3)> + 'a {
-        let x = points.positions[i].0;
-        self.lists.of(i).iter().map(move |&j| (j as usize, points.positions[j as usize].0 - x))
+        (0..self.areas.len()).into_par_iter().with_min_len(256).map(inverse).collect()
     }
 
     fn wall_offsets<'a>(&'a self, points: Points<'a>, i: usize) -> impl Iterator<Item = (usize, DVec3)> + 'a {
@@ -245,44 +275,12 @@ fn flat_rows<I>(lists: &NeighbourLists, row: impl Fn(usize) -> I + Sync) -> Vec<
 where
     I: Iterator<Item = f64>,
 {
-    const CHUNK: usize = 1024;
-    let count = lists.len();
     let mut flat = vec![0.0; lists.indices.len()];
-    let mut pieces = Vec::with_capacity(count.div_ceil(CHUNK));
-    let mut rest = flat.as_mut_slice();
-    for start in (0..count).step_by(CHUNK) {
-        let end = (start + CHUNK).min(count);
-        let (piece, tail) = rest.split_at_mut(lists.offsets[end] - lists.offsets[start]);
-        pieces.push((start..end, piece));
-        rest = tail;
-    }
-    pieces.into_par_iter().for_each(|(rows, piece)| {
+    lists.pieces_mut(&mut flat).into_par_iter().for_each(|(rows, piece)| {
         let values = rows.flat_map(&row);
         piece.iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     });
     flat
-}
-
-/// `a_i = C / sum W`, over carriers and boundary particles of the same sheet.
-fn areas(points: Points, wide: &CellList, wall: &CellList) -> Vec<f64> {
-    let kernel = Kernel::new(DENSITY_SUPPORT * points.spacing);
-    let Points { positions, normals, regions, .. } = points;
-    let density = |i: usize| {
-        let place = positions[i].0;
-        let mut sum = 0.0;
-        wide.for_each_near(place, |j| {
-            if regions[i] == regions[j] && normals[i].0.dot(normals[j].0) > SAME_SHEET {
-                sum += kernel.value(place.distance_squared(positions[j].0));
-            }
-        });
-        wall.for_each_near(place, |j| {
-            if regions[i] == points.wall_regions[j] {
-                sum += kernel.value(place.distance_squared(points.wall[j].0));
-            }
-        });
-        sum
-    };
-    (0..positions.len()).into_par_iter().with_min_len(128).map(|i| LATTICE_CONSTANT / density(i)).collect()
 }
 
 /// Copies the stencil's areas into a column.

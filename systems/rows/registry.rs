@@ -9,6 +9,9 @@ use froth_components::identity::StableId;
 use froth_components::kind::Kind;
 use rayon::prelude::*;
 
+/// Rows per parallel piece of work.
+const CHUNK: usize = 16_384;
+
 /// Every column of every kind, in the order of registration.
 #[derive(Resource, Default)]
 pub struct ColumnRegistry {
@@ -228,7 +231,17 @@ fn column_numbers<K: Kind, C: Column>(world: &mut World) -> Vec<f64> {
 fn first_not_finite<K: Kind, C: Column>(world: &mut World) -> Option<usize> {
     let mut state = world.query_filtered::<&C, With<K>>();
     let tables = state.contiguous_iter(world).expect("invariant: columns are stored in tables");
-    tables.flatten().position(|value| !value.value().is_finite())
+    let mut start = 0;
+    for table in tables {
+        let in_chunk = |chunk: &[C]| chunk.iter().position(|value| !value.value().is_finite());
+        let chunks = table.par_chunks(CHUNK).enumerate();
+        let found = chunks.filter_map(|(k, chunk)| Some(k * CHUNK + in_chunk(chunk)?)).find_first(|_| true);
+        if let Some(row) = found {
+            return Some(start + row);
+        }
+        start += table.len();
+    }
+    None
 }
 
 fn stable_id<K: Kind>(world: &mut World, row: usize) -> Option<u64> {

@@ -2,6 +2,7 @@
 //!
 //! `cargo bench --bench neighbours`. Every method finds, for each point, all points within three spacings, and sums
 //! their distances, on one thread. Times are the least of several calls and include building the structure.
+#![allow(clippy::print_stdout, reason = "a benchmark prints its table")]
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -2,6 +2,7 @@
 //!
 //! `cargo bench --bench stages -- 16000` measures at 16 000 Eulerian particles; `RAYON_NUM_THREADS=1` on one thread.
 //! Each time is the least of several calls. `froth bench` measures the stages within a running simulation.
+#![allow(clippy::print_stdout, reason = "a benchmark prints its table")]
 
 use std::hint::black_box;
 use std::time::Instant;

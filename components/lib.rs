@@ -3,7 +3,7 @@
 //! * [`authored`]: what a scene file can say: shapes, films, fields; [`quantity`]: its dimensioned values.
 //! * [`kind`]: what an entity is (Eulerian particle, Lagrangian particle, boundary particle, region).
 //! * [`motion`], [`film`], [`gas`], [`identity`]: what it carries, one physical idea per component.
-//! * [`column`]: how a component is laid out as scalars, for row permutation, checkpoints and export.
+//! * [`column`](mod@column): how a component is laid out as scalars, for row permutation, checkpoints and export.
 //! * [`lamella`]: the films of a run; [`clock`], [`material`]: the few quantities that belong to the whole run.
 //!
 //! Conventions (units, signs, orientation) are drawn once in [`film`].

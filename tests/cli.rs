@@ -130,7 +130,10 @@ fn explain_says_what_runs_and_why() {
     let text = stdout(&output(folder.path(), &["explain", "small.ron"]));
     let line =
         |name: &str| text.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_default().to_owned();
-    assert!(line("gather liquid (L2E)").ends_with("runs   there is: lagrangian particles"), "{text}");
+    assert!(
+        line("link the particle sets and gather liquid (L2E)").ends_with("runs   there is: lagrangian particles"),
+        "{text}"
+    );
     assert!(line("wind").ends_with("rests  needs: a wind"), "{text}");
     assert!(line("choose the step length").ends_with("runs   in every step"), "{text}");
     let stages = text.lines().filter(|line| !line.starts_with(' ')).count();

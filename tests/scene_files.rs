@@ -150,8 +150,8 @@ fn the_estimate_follows_from_areas_and_rims() {
         [ Rectangle(width: "1 m", height: "50 cm"), Film(thickness: Uniform("400 nm")) ] ])"#,
     );
     let estimate = scene.estimate();
-    assert_eq!((estimate.eulerian, estimate.lagrangian, estimate.boundary), (5000, 50_000, 300));
-    let bytes = 5300 * froth::scene::BYTES_PER_EULERIAN + 50_000 * froth::scene::BYTES_PER_LAGRANGIAN;
+    assert_eq!((estimate.eulerian, estimate.lagrangian, estimate.boundary), (5000, 50_000, 1500));
+    let bytes = 6500 * froth::scene::BYTES_PER_EULERIAN + 50_000 * froth::scene::BYTES_PER_LAGRANGIAN;
     assert_eq!(estimate.bytes, bytes);
     assert!(scene.check(bytes).is_ok());
     assert_eq!(scene.check(bytes - 1).unwrap_err().stable_code(), "F0051");

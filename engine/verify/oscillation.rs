@@ -102,9 +102,8 @@ fn eliminate<const N: usize>(mut m: [[f64; N]; N], mut x: [f64; N]) -> [f64; N] 
         x.swap(i, pivot);
         for k in i + 1..N {
             let factor = m[k][i] / m[i][i];
-            for j in i..N {
-                m[k][j] -= factor * m[i][j];
-            }
+            let upper = m[i];
+            m[k].iter_mut().zip(upper).skip(i).for_each(|(lower, upper)| *lower -= factor * upper);
             x[k] -= factor * x[i];
         }
     }

@@ -30,6 +30,8 @@ const RADII: DVec3 = DVec3::new(0.06, 0.05, 0.04);
 const PASSES: usize = 20;
 /// Displacement of the carriers before they are spread again, in spacings along each axis.
 const NOISE: f64 = 0.3;
+/// Least order of the thickness shown: 1, since some carriers interpolate constants only, less the scatter of single layouts.
+const LIQUID_ORDER: f64 = 0.7;
 
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let counts: &[usize] = effort.choose(&[500, 1000, 2000], &[1000, 2000, 4000, 8000]);
@@ -68,7 +70,7 @@ fn shape_findings(name: &str, outcomes: &[Outcome]) -> Vec<Finding> {
         Finding::vanishing(format!("{name}: rms error of a scalar slid along"), finest.carried, 5e-3)
             .converging(&order(|o| o.carried), 1.7),
         Finding::vanishing(format!("{name}: rms change of the thickness shown, relative"), finest.shown, 5e-3)
-            .converging(&order(|o| o.shown), 0.9),
+            .converging(&order(|o| o.shown), LIQUID_ORDER),
     ]
 }
 

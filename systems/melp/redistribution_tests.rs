@@ -74,7 +74,6 @@ fn noise_is_spread_out_and_the_sphere_keeps_its_radius() {
         let mut sphere = Sphere::noisy(count, 0.3);
         let first = sphere.pass();
         let last = (0..20).map(|_| sphere.pass()).last().unwrap();
-        eprintln!("{count}: {first} -> {last}, radius - 1 = {}", sphere.mean_radius() - 1.0);
         assert!(last < 0.2 * first, "{count}: {first} -> {last}");
         assert!((sphere.mean_radius() - 1.0).abs() < allowed, "{count}: {}", sphere.mean_radius() - 1.0);
     }

@@ -1,7 +1,7 @@
 //! Draws the frames of a run: which particles, which quantity, from where; then all frames as one animated picture.
 //!
-//! A film is drawn from its material particles where it has some, so that swirls show at full detail, and from its
-//! carriers where not. The camera is fixed over the run, by the scene alone: a resumed run draws the same bytes.
+//! A film is drawn where its carriers are. It shows the values of its material particles where it has some, so that
+//! swirls show at full detail, and those of its carriers where not. The camera is fixed over the run, by the scene alone: a resumed run draws the same bytes.
 
 mod quantity;
 
@@ -11,14 +11,16 @@ use bevy_ecs::world::World;
 use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle};
 use froth_components::lamella::Lamellae;
 use froth_components::motion::{Normal, Position};
+use froth_systems::neighbours::nearest::NearestPoint;
 use froth_systems::rows::read_column;
 use glam::DVec3;
 use image::{ImageFormat, RgbImage};
+use rayon::prelude::*;
 
 pub use quantity::QuantityError;
 
 use self::quantity::Quantity;
-use crate::picture::{Animation, AnimationSettings, Camera, FilmPoints, Painter, PictureError, PictureSettings};
+use crate::picture::{Animation, AnimationSettings, Camera, FilmPoints, Painter, Part, PictureError, PictureSettings};
 use crate::run::{FrameError, FrameSink, RunFolder};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
@@ -70,20 +72,35 @@ impl PictureFrames {
 
     fn paint(&self, world: &mut World) -> Result<RgbImage, PictureError> {
         let spacing = world.resource::<Lamellae>().spacing;
-        let carriers = read_column::<EulerianParticle, Position>(world).len() as f64;
-        if self.quantity.kind == LagrangianParticle::NAME {
-            self.paint_kind::<LagrangianParticle>(world, |count| spacing * (carriers / count).sqrt())
-        } else {
-            self.paint_kind::<EulerianParticle>(world, |_| spacing)
+        let values = self.quantity.values(world);
+        let carriers = Rows::of::<EulerianParticle>(world);
+        if self.quantity.kind != LagrangianParticle::NAME {
+            return self.painter.paint(&carriers.film(&values, spacing, Part::Whole));
         }
+        let liquid = Rows::of::<LagrangianParticle>(world);
+        let detail_spacing = spacing * (carriers.positions.len() as f64 / values.len() as f64).sqrt();
+        let detail = liquid.film(&values, detail_spacing, Part::Detail);
+        detail.check()?;
+        let nearest = NearestPoint::build(&liquid.positions).map_err(|_| PictureError::NoPoints)?;
+        let ground: Vec<f64> = carriers.positions.par_iter().map(|x| values[nearest.nearest(*x).0]).collect();
+        self.painter.paint_all(&[detail, carriers.film(&ground, spacing, Part::Ground)])
+    }
+}
+
+/// Where the particles of one kind are.
+struct Rows {
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+}
+
+impl Rows {
+    fn of<K: Kind>(world: &mut World) -> Self {
+        let positions = read_column::<K, Position>(world).iter().map(|p| p.0).collect();
+        Self { positions, normals: read_column::<K, Normal>(world).iter().map(|n| n.0).collect() }
     }
 
-    fn paint_kind<K: Kind>(&self, world: &mut World, spacing: impl Fn(f64) -> f64) -> Result<RgbImage, PictureError> {
-        let positions: Vec<DVec3> = read_column::<K, Position>(world).iter().map(|p| p.0).collect();
-        let normals: Vec<DVec3> = read_column::<K, Normal>(world).iter().map(|n| n.0).collect();
-        let values = self.quantity.values(world);
-        let spacing = spacing(positions.len() as f64);
-        self.painter.paint(&FilmPoints { positions: &positions, normals: &normals, values: &values, spacing })
+    fn film<'a>(&'a self, values: &'a [f64], spacing: f64, part: Part) -> FilmPoints<'a> {
+        FilmPoints { positions: &self.positions, normals: &self.normals, values, spacing, part }
     }
 }
 

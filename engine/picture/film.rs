@@ -4,6 +4,18 @@ use super::error::PictureError;
 use glam::DVec3;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator};
 
+/// What a set of points tells about its film.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// Both where the film is and what it shows.
+    #[default]
+    Whole,
+    /// What the film shows. Points that drift apart leave no holes, since a [`Part::Ground`] tells where the film is.
+    Detail,
+    /// Where the film is; what it shows only where there is no detail. Painted after its detail.
+    Ground,
+}
+
 /// Points spread evenly over a film, one row per point.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPoints<'a> {
@@ -15,6 +27,8 @@ pub struct FilmPoints<'a> {
     pub values: &'a [f64],
     /// Distance between neighbours, metres: `√(film area / number of points)`.
     pub spacing: f64,
+    /// What these points tell about the film.
+    pub part: Part,
 }
 
 impl FilmPoints<'_> {
@@ -63,12 +77,12 @@ fn first_not_finite<T: Sync>(
 
 #[cfg(test)]
 mod tests {
-    use super::FilmPoints;
+    use super::{FilmPoints, Part};
     use crate::picture::error::PictureError;
     use glam::DVec3;
 
     fn two_points<'a>(normals: &'a [DVec3], values: &'a [f64]) -> FilmPoints<'a> {
-        FilmPoints { positions: &[DVec3::ZERO, DVec3::X], normals, values, spacing: 1.0 }
+        FilmPoints { positions: &[DVec3::ZERO, DVec3::X], normals, values, spacing: 1.0, part: Part::Whole }
     }
 
     #[test]

@@ -7,19 +7,18 @@
 //! Source: moving least squares after Levin 1998, §3, with linear basis. Limits: at most [`MAX_SHEETS`] sheets per
 //! sample; sheets nearer to each other than about 4 spacings that face alike are drawn as one.
 
-use super::splat::{FULL_WEIGHT, Splat};
+use super::splat::{EDGE_WEIGHT, FULL_WEIGHT, Splat};
 use glam::{Vec2, Vec3};
 
 /// Most sheets of film behind one sample.
 pub(super) const MAX_SHEETS: usize = 8;
-/// Share of the full weight at which the film's edge is drawn: low enough that thin sampling tears no holes.
-const EDGE_WEIGHT: f32 = 0.28;
 /// Variance added to the fit, samples squared, so that it stays solvable where all points line up.
 const FIT_FLOOR: f32 = 0.05;
 
-/// Sums per sheet: weight, `w d` (2), `w d dᵀ` (3), `w v`, `w v d` (2), `w n` (3), `w` depth, slope of the weight (2).
+/// Sums per sheet: weight, `w d` (2), `w d dᵀ` (3), `w v`, `w v d` (2), `w n` (3), `w` depth, slope of the cover (2), and
+/// the cover: the weight of the points that tell where the film is.
 ///
-/// One flat array, padded to a multiple of four, so that the compiler adds four numbers at a time.
+/// One flat array, of a multiple of four, so that the compiler adds four numbers at a time.
 type Sums = [f32; 16];
 
 /// Running sums of one sheet at one sample.
@@ -143,7 +142,7 @@ fn chord(splat: &Splat, centre_x: f32, down: f32) -> Option<(f32, f32)> {
 #[inline]
 fn terms(splat: &Splat, offset: Vec2, inside: f32, along: Vec2) -> Sums {
     let weight = splat.height * inside * inside;
-    let steepness = 4.0 * splat.height * inside;
+    let steepness = 4.0 * splat.cover * splat.height * inside;
     let (x, y) = (weight * offset.x, weight * offset.y);
     let (value, normal) = (splat.value, weight * splat.normal);
     [
@@ -162,15 +161,15 @@ fn terms(splat: &Splat, offset: Vec2, inside: f32, along: Vec2) -> Sums {
         weight * splat.depth,
         steepness * along.x,
         steepness * along.y,
-        0.0,
+        splat.cover * weight,
     ]
 }
 
 impl Sheet {
-    /// Share of the sample on the film's side of the line where the weight falls to [`EDGE_WEIGHT`].
+    /// Share of the sample on the film's side of the line where the cover falls to [`EDGE_WEIGHT`].
     fn coverage(&self) -> f32 {
-        let [weight, .., slope_x, slope_y, _] = self.sums;
-        let above = weight - EDGE_WEIGHT * FULL_WEIGHT;
+        let [.., slope_x, slope_y, cover] = self.sums;
+        let above = cover - EDGE_WEIGHT * FULL_WEIGHT;
         let steepness = Vec2::new(slope_x, slope_y).length().max(1e-6);
         (0.5 + above / steepness).clamp(0.0, 1.0)
     }
@@ -199,7 +198,7 @@ impl Sheet {
 mod tests {
     use super::{MAX_SHEETS, Surface, TileLayers};
     use crate::picture::camera::{Camera, View};
-    use crate::picture::film::FilmPoints;
+    use crate::picture::film::{FilmPoints, Part};
     use crate::picture::splat::splat_of_point;
     use glam::{DVec3, Vec2};
     use std::f64::consts::PI;
@@ -213,10 +212,16 @@ mod tests {
     }
 
     fn drawn(film: &FilmPoints) -> TileLayers {
+        drawn_all(std::slice::from_ref(film))
+    }
+
+    fn drawn_all(films: &[FilmPoints]) -> TileLayers {
         let mut layers = TileLayers::new(EDGE);
         layers.restart((0, 0));
         let view = view();
-        (0..film.positions.len()).filter_map(|row| splat_of_point(&view, film, row)).for_each(|s| layers.add(&s));
+        for film in films {
+            (0..film.positions.len()).filter_map(|row| splat_of_point(&view, film, row)).for_each(|s| layers.add(&s));
+        }
         layers
     }
 
@@ -264,8 +269,13 @@ mod tests {
         let (positions, spacing) = square(60);
         let field = |p: DVec3| 3.0 + 2.0 * p.x - 0.7 * p.y;
         let values: Vec<f64> = positions.iter().map(|&p| field(p)).collect();
-        let film =
-            FilmPoints { positions: &positions, normals: &vec![DVec3::Z; values.len()], values: &values, spacing };
+        let film = FilmPoints {
+            positions: &positions,
+            normals: &vec![DVec3::Z; values.len()],
+            values: &values,
+            spacing,
+            part: Part::Whole,
+        };
         let layers = drawn(&film);
         for sample in 0..EDGE * EDGE {
             let (column, row) = (sample % EDGE, sample / EDGE);
@@ -287,7 +297,13 @@ mod tests {
             let (positions, spacing) = square(across);
             let values: Vec<f64> = positions.iter().map(|&p| field(p)).collect();
             let normals = vec![DVec3::Z; values.len()];
-            let layers = drawn(&FilmPoints { positions: &positions, normals: &normals, values: &values, spacing });
+            let layers = drawn(&FilmPoints {
+                positions: &positions,
+                normals: &normals,
+                values: &values,
+                spacing,
+                part: Part::Whole,
+            });
             let inside = (0..EDGE * EDGE)
                 .map(|s| (s % EDGE, s / EDGE))
                 .filter(|&(column, row)| on_plane(column, row).abs().max_element() < 0.7);
@@ -304,7 +320,13 @@ mod tests {
     fn a_sphere_shows_a_front_and_a_back_sheet_without_holes() {
         for points in [2_000, 20_000] {
             let (directions, spacing) = sphere(points);
-            let film = FilmPoints { positions: &directions, normals: &directions, values: &vec![1.0; points], spacing };
+            let film = FilmPoints {
+                positions: &directions,
+                normals: &directions,
+                values: &vec![1.0; points],
+                spacing,
+                part: Part::Whole,
+            };
             let layers = drawn(&film);
             // The sphere's silhouette: sin(angle) = 1/4, seen at the focal length.
             let silhouette = (view().focal * (1.0_f64 / 4.0).asin().tan()) as f32;
@@ -325,11 +347,43 @@ mod tests {
     }
 
     #[test]
+    fn the_ground_shows_where_the_detail_has_a_hole() {
+        let (mut detail, spacing) = square(80);
+        detail.retain(|p| p.length() > 0.3);
+        let (ground, wide) = square(20);
+        let film = |positions, values, spacing, part| FilmPoints {
+            positions,
+            normals: &[DVec3::Z; 6400][..positions.len()],
+            values,
+            spacing,
+            part,
+        };
+        let (ones, twos) = (vec![1.0; detail.len()], vec![2.0; ground.len()]);
+        let films = [film(&detail[..], &ones[..], spacing, Part::Detail), film(&ground, &twos, wide, Part::Ground)];
+        let layers = drawn_all(&films);
+        for (column, row) in (0..EDGE * EDGE).map(|s| (s % EDGE, s / EDGE)) {
+            let (place, found) = (on_plane(column, row), surfaces(&layers, column, row));
+            if place.abs().max_element() < 0.9 {
+                assert!(found.len() == 1 && found[0].coverage == 1.0, "{place}: {found:?}");
+                let shown = if place.length() < 0.2 { 2.0 } else { 1.0 };
+                let is_clear = place.length() < 0.2 || place.length() > 0.35;
+                assert!(!is_clear || (found[0].value - shown).abs() < 0.03, "{place}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
     fn the_edge_of_an_open_film_is_one_sample_wide() {
         let (positions, spacing) = square(20);
         let normals = vec![DVec3::Z; positions.len()];
         let values = vec![1.0; positions.len()];
-        let layers = drawn(&FilmPoints { positions: &positions, normals: &normals, values: &values, spacing });
+        let layers = drawn(&FilmPoints {
+            positions: &positions,
+            normals: &normals,
+            values: &values,
+            spacing,
+            part: Part::Whole,
+        });
         let partly = (0..EDGE)
             .flat_map(|column| surfaces(&layers, column, EDGE / 2))
             .filter(|sheet| sheet.coverage > 0.0 && sheet.coverage < 1.0)

@@ -15,7 +15,7 @@
 //! | legends, moving pictures | `scale_bar`, `lettering`, `animation` |
 //!
 //! ```
-//! use froth::picture::{FilmPoints, Painter, PictureSettings};
+//! use froth::picture::{FilmPoints, Painter, Part, PictureSettings};
 //! use glam::DVec3;
 //!
 //! // A bubble of 1000 points, 400 nm thick.
@@ -28,7 +28,7 @@
 //!     .collect();
 //! let positions: Vec<DVec3> = directions.iter().map(|d| 0.05 * *d).collect();
 //! let spacing = 0.05 * (4.0 * std::f64::consts::PI / 1000.0).sqrt();
-//! let film = FilmPoints { positions: &positions, normals: &directions, values: &[400e-9; 1000], spacing };
+//! let film = FilmPoints { positions: &positions, normals: &directions, values: &[400e-9; 1000], spacing, part: Part::Whole };
 //! let painter = Painter::new(PictureSettings { width: 64, height: 64, ..Default::default() })?;
 //! assert_eq!(painter.paint(&film)?.dimensions(), (64, 64));
 //! # Ok::<(), froth::picture::PictureError>(())
@@ -57,7 +57,7 @@ pub use animation::{Animation, AnimationSettings};
 pub use camera::Camera;
 pub use colour_map::ColourMap;
 pub use error::PictureError;
-pub use film::FilmPoints;
+pub use film::{FilmPoints, Part};
 pub use painter::Painter;
 pub use settings::{Look, PictureSettings};
 pub use studio::Background;

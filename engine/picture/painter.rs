@@ -120,7 +120,7 @@ fn extremes(films: &[FilmPoints]) -> (f64, f64) {
 mod tests {
     use super::Painter;
     use crate::picture::error::PictureError;
-    use crate::picture::film::FilmPoints;
+    use crate::picture::film::{FilmPoints, Part};
     use crate::picture::settings::PictureSettings;
     use glam::DVec3;
     use image::RgbImage;
@@ -145,7 +145,13 @@ mod tests {
 
         fn film(&self) -> FilmPoints<'_> {
             let spacing = (4.0 * std::f64::consts::PI / self.values.len() as f64).sqrt();
-            FilmPoints { positions: &self.directions, normals: &self.directions, values: &self.values, spacing }
+            FilmPoints {
+                positions: &self.directions,
+                normals: &self.directions,
+                values: &self.values,
+                spacing,
+                part: Part::Whole,
+            }
         }
     }
 
@@ -207,7 +213,7 @@ mod tests {
 
     #[test]
     fn nothing_to_draw_is_an_error() {
-        let empty = FilmPoints { positions: &[], normals: &[], values: &[], spacing: 1.0 };
+        let empty = FilmPoints { positions: &[], normals: &[], values: &[], spacing: 1.0, part: Part::Whole };
         assert!(matches!(painter("()").paint(&empty), Err(PictureError::NoPoints)));
         assert!(matches!(painter("()").paint_all(&[]), Err(PictureError::NoPoints)));
     }
@@ -221,7 +227,13 @@ mod tests {
 
     #[test]
     fn one_lone_point_and_a_point_at_the_eye_are_drawn_without_harm() {
-        let film = FilmPoints { positions: &[DVec3::ZERO], normals: &[DVec3::Z], values: &[3e-7], spacing: 0.01 };
+        let film = FilmPoints {
+            positions: &[DVec3::ZERO],
+            normals: &[DVec3::Z],
+            values: &[3e-7],
+            spacing: 0.01,
+            part: Part::Whole,
+        };
         for settings in [
             "(width: 9, height: 7)",
             "(width: 9, height: 7, camera: Some((position: (0, 0, 1e-9), target: (0, 0, 0))))",

@@ -8,7 +8,7 @@
 //! Gathered per sample in [`layers`](super::layers).
 
 use super::camera::View;
-use super::film::FilmPoints;
+use super::film::{FilmPoints, Part};
 use glam::{DVec3, Vec2, Vec3};
 
 /// Radius of the kernel, in spacings.
@@ -17,6 +17,12 @@ pub(super) const KERNEL_RADIUS: f64 = 2.0;
 const LOW_PASS: f64 = 1.25;
 /// Sum of weights of an evenly covered film: the kernel's integral over the area per point.
 pub(super) const FULL_WEIGHT: f32 = (std::f64::consts::PI * KERNEL_RADIUS * KERNEL_RADIUS / 3.0) as f32;
+/// Share of the full weight at which the film's edge is drawn: low enough that thin sampling tears no holes.
+pub(super) const EDGE_WEIGHT: f32 = 0.28;
+/// The same for a film's ground, whose points are even: at its edge half of the kernel lies on the film.
+const GROUND_EDGE_WEIGHT: f32 = 0.5;
+/// What the values of a ground weigh beside those of the detail on it.
+const GROUND_VALUE: f32 = 0.01;
 /// Smallest cosine in the estimate of how deep an ellipse reaches.
 const SHALLOWEST: f64 = 0.03;
 
@@ -31,6 +37,8 @@ pub(super) struct Splat {
     pub conic: Vec3,
     /// Weight at the centre, dimensionless, at most 1.
     pub height: f32,
+    /// Part of the weight that says that there is film.
+    pub cover: f32,
     /// Normal in camera axes, turned towards the eye.
     pub normal: Vec3,
     /// Whether the point's own normal points to the eye.
@@ -56,12 +64,18 @@ pub(super) fn splat_of_point(view: &View, film: &FilmPoints, row: usize) -> Opti
     let footprint = Footprint::new(view, placed, normal, disc);
     let (x, y) = view.project(placed);
     let reach = footprint.reach();
+    let (shows, covers) = match film.part {
+        Part::Whole => (1.0, 1.0),
+        Part::Detail => (1.0, 0.0),
+        Part::Ground => (GROUND_VALUE, EDGE_WEIGHT / GROUND_EDGE_WEIGHT / GROUND_VALUE),
+    };
     let visible = x + reach.0 > 0.0 && x - reach.0 < view.width && y + reach.1 > 0.0 && y - reach.1 < view.height;
     visible.then(|| Splat {
         centre: Vec2::new(x as f32, y as f32),
         reach: Vec2::new(reach.0 as f32, reach.1 as f32),
         conic: footprint.conic(),
-        height: footprint.height() as f32,
+        height: shows * footprint.height() as f32,
+        cover: covers,
         normal: if faces_eye { normal } else { -normal }.as_vec3(),
         faces_eye,
         depth: depth as f32,
@@ -122,7 +136,7 @@ impl Footprint {
 mod tests {
     use super::{KERNEL_RADIUS, LOW_PASS, splat_of_point};
     use crate::picture::camera::Camera;
-    use crate::picture::film::FilmPoints;
+    use crate::picture::film::{FilmPoints, Part};
     use glam::DVec3;
 
     fn camera() -> Camera {
@@ -131,7 +145,13 @@ mod tests {
 
     fn one_point(normal: DVec3) -> super::Splat {
         let view = camera().view(500.0, 500.0).unwrap();
-        let film = FilmPoints { positions: &[DVec3::ZERO], normals: &[normal], values: &[1.0], spacing: 0.01 };
+        let film = FilmPoints {
+            positions: &[DVec3::ZERO],
+            normals: &[normal],
+            values: &[1.0],
+            spacing: 0.01,
+            part: Part::Whole,
+        };
         splat_of_point(&view, &film, 0).unwrap()
     }
 

@@ -1,6 +1,5 @@
 //! Nearest-point questions, answered by a k-d tree (kiddo).
 
-use froth_components::motion::Position;
 use glam::DVec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
@@ -22,8 +21,8 @@ impl NearestPoint {
     ///
     /// # Errors
     /// [`NoTree`] for an empty set or coordinates that are not finite.
-    pub fn build(points: &[Position]) -> Result<Self, NoTree> {
-        let raw: Vec<[f64; 3]> = points.iter().map(|p| p.0.to_array()).collect();
+    pub fn build(points: &[DVec3]) -> Result<Self, NoTree> {
+        let raw: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
         if raw.is_empty() || raw.iter().flatten().any(|v| !v.is_finite()) {
             return Err(NoTree { points: raw.len() });
         }

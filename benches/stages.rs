@@ -24,6 +24,7 @@ use froth_systems::melp::scatter::{Blend, CarrierFlow, Received, scatter_all};
 use froth_systems::melp::tiles::Rows;
 use froth_systems::operators::conjugate_gradient::{StopRule, Workspace};
 use froth_systems::operators::stencil::{Points, Stencil};
+use glam::DVec3;
 
 /// Calls of which the fastest counts.
 const CALLS: usize = 5;
@@ -63,8 +64,9 @@ fn measure_parts(simulation: &mut Simulation) {
         Points { positions: &positions, normals: &normals, regions: &regions, wall: &[], wall_regions: &[], spacing };
     let mut stencil = Stencil::build(points);
     time("build the stencil", || stencil.rebuild(points));
-    let carriers = Carriers { positions: &positions, normals: &normals, regions: &regions, stencil: &stencil, spacing };
-    time("measure dual areas", || dual_areas(carriers));
+    let carriers =
+        Carriers { positions: &positions, normals: &normals, regions: &regions, cells: &stencil.cells, spacing };
+    time("measure dual areas", || dual_areas(carriers, &stencil.areas));
     measure_transfers(simulation, carriers, &shapes);
     let films = [0..positions.len()];
     let spread =
@@ -102,17 +104,23 @@ fn measure_transfers(simulation: &mut Simulation, carriers: Carriers, shapes: &[
     let velocity: Vec<_> =
         gather_all(carriers, material, &mut links).iter().map(|gathered| gathered.momentum / gathered.volume).collect();
     let concentration: Vec<f64> = simulation.column::<E, Surfactant>().iter().map(|gamma| gamma.0).collect();
-    let flow = CarrierFlow { velocity: &velocity, change: &velocity, concentration: &concentration };
+    let flow = CarrierFlow { velocity: &velocity, change: &velocity, drift: &[], concentration: &concentration };
     let blend = Blend { affine: true, flip: 0.0 };
-    let mut taken = vec![0.0; positions.len()];
+    let (mut taken, mut drift) = (vec![0.0; positions.len()], vec![DVec3::ZERO; positions.len()]);
     time("scatter (E2L)", || {
-        let received = Received { velocities: &mut velocities, gradients: &mut gradients, concentration: &mut taken };
+        let received = Received {
+            velocities: &mut velocities,
+            gradients: &mut gradients,
+            concentration: &mut taken,
+            drift: &mut drift,
+        };
         scatter_all(carriers, flow, rows, &links, blend, received);
     });
     time("advance and project the liquid", || {
         let material = MovingMaterial {
             positions: &mut positions,
             normals: &mut normals,
+            drift: &drift,
             velocities: &mut velocities,
             gradients: &mut gradients,
             regions: &regions,

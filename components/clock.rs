@@ -10,10 +10,21 @@ pub struct Clock {
     pub time: f64,
     /// Length of the present step, s. Chosen in the `Clock` stage.
     pub step_length: f64,
+    /// Equal substeps that the present step is divided into for the film's own motion; 0 counts as 1. Chosen in the
+    /// `Clock` stage.
+    pub substeps: u32,
     /// Steps finished.
     pub steps: u64,
     /// The next moment that a step must not pass (the next frame, or the end), s.
     pub horizon: f64,
+}
+
+impl Clock {
+    /// Length of one substep, s: what systems of the stages `Geometry` to `Deform` advance by.
+    #[must_use]
+    pub fn substep_length(&self) -> f64 {
+        self.step_length / f64::from(self.substeps.max(1))
+    }
 }
 
 /// Seed of the run's random numbers, which are keyed by (seed, stable id, step, use).

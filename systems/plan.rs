@@ -24,25 +24,23 @@ use std::sync::Arc;
 
 use bevy_ecs::component::Component;
 use bevy_ecs::resource::Resource;
-use bevy_ecs::schedule::{IntoScheduleConfigs, Schedule, ScheduleLabel, SystemSet};
+use bevy_ecs::schedule::{IntoScheduleConfigs, Schedule, SystemSet};
 use bevy_ecs::system::IntoSystem;
 use bevy_ecs::world::World;
+use froth_components::clock::Clock;
 use froth_components::kind::Kind;
 
 use crate::observe::Faults;
-use crate::stage::{Stage, staged_schedule};
-
-/// Label of the schedule that is one step.
-#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Step;
+use crate::stage::{Part, Stage, staged_schedule};
 
 /// Place of one system in its stage, counted over the whole plan.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Slot(Stage, usize);
 
-/// A schedule together with the reasons of its systems.
+/// The schedules of a step together with the reasons of their systems.
 pub struct SchedulePlan {
-    schedule: Schedule,
+    /// One per [`Part::ALL`].
+    schedules: [Schedule; Part::ALL.len()],
     systems: Vec<PlannedSystem>,
 }
 
@@ -77,7 +75,7 @@ impl SchedulePlan {
     /// A plan without systems.
     #[must_use]
     pub fn new() -> Self {
-        Self { schedule: staged_schedule(Step), systems: Vec::new() }
+        Self { schedules: Part::ALL.map(staged_schedule), systems: Vec::new() }
     }
 
     /// Adds a system to a stage, after those that the stage has already. `name` says what it does in physics words.
@@ -100,7 +98,7 @@ impl SchedulePlan {
             .in_set(stage)
             .in_set(slot)
             .run_if(move |world: &World| Faults::none(world) && condition.hold(world));
-        self.schedule.add_systems(match before {
+        self.schedules[stage.part() as usize].add_systems(match before {
             Some(before) => configured.after(Slot(stage, before)),
             None => configured,
         });
@@ -115,14 +113,18 @@ impl SchedulePlan {
         Stage::ALL.into_iter().flat_map(of_stage).map(|planned| planned.explain(world)).collect()
     }
 
-    /// The schedule, to run it or to add what belongs to no stage.
-    pub fn schedule_mut(&mut self) -> &mut Schedule {
-        &mut self.schedule
+    /// The schedules, to add what belongs to no stage.
+    pub fn schedules_mut(&mut self) -> impl Iterator<Item = (Part, &mut Schedule)> {
+        Part::ALL.into_iter().zip(&mut self.schedules)
     }
 
-    /// Runs one step.
+    /// Runs one step: the first part, as many substeps as the [`Clock`] says by then, the last part.
     pub fn run(&mut self, world: &mut World) {
-        self.schedule.run(world);
+        let [begin, substep, end] = &mut self.schedules;
+        begin.run(world);
+        let count = world.get_resource::<Clock>().map_or(1, |clock| clock.substeps.max(1));
+        (0..count).for_each(|_| substep.run(world));
+        end.run(world);
     }
 }
 
@@ -249,6 +251,18 @@ mod tests {
         assert_eq!(ran(&mut plan, &mut world), ["gather"]);
         world.despawn(particle);
         assert!(ran(&mut plan, &mut world).is_empty());
+    }
+
+    #[test]
+    fn substeps_repeat_the_stages_between_gathering_and_scattering() {
+        let mut plan = SchedulePlan::new();
+        plan.add(Stage::Clock, "c", |mut clock: ResMut<Clock>| clock.substeps = 2, Requires::nothing());
+        for (stage, word) in [(Stage::Gather, "g"), (Stage::Forces, "f"), (Stage::Deform, "d"), (Stage::Scatter, "s")] {
+            plan.add(stage, word, write(word), Requires::nothing());
+        }
+        let mut world = World::new();
+        world.init_resource::<Clock>();
+        assert_eq!(ran(&mut plan, &mut world), ["g", "f", "d", "f", "d", "s"]);
     }
 
     #[test]

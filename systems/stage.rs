@@ -13,10 +13,13 @@ use bevy_ecs::schedule::{ScheduleLabel, SystemSet};
 /// 6. `Coupling`: between regions: tracking, contact, sharing of surface tension, material transfer
 /// 7. `Velocity`: velocity from what was evolved (Biot-Savart, Poisson)
 /// 8. `Constraints`: wires, obstacles, rims
-/// 9. `Scatter`: carriers to material particles (E2L; mesh to particle)
-/// 10. `Advance`: move carriers, move material, project
-/// 11. `Topology`: redistribution, remeshing, sorting of rows
-/// 12. `Observe`: diagnostics, checks for finite values, events
+/// 9. `Deform`: the film follows its own fast motion
+/// 10. `Scatter`: carriers to material particles (E2L; mesh to particle)
+/// 11. `Advance`: move carriers, move material, project
+/// 12. `Topology`: redistribution, remeshing, sorting of rows
+/// 13. `Observe`: diagnostics, checks for finite values, events
+///
+/// `Geometry` to `Deform` are a substep: they run [`Clock::substeps`](froth_components::clock::Clock) times in a step.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// Choose the step length.
@@ -35,6 +38,8 @@ pub enum Stage {
     Velocity,
     /// Wires, obstacles, rims.
     Constraints,
+    /// The film follows its own fast motion.
+    Deform,
     /// Carriers to material particles.
     Scatter,
     /// Move carriers and material.
@@ -47,7 +52,7 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Clock,
         Self::Gather,
         Self::Geometry,
@@ -56,27 +61,55 @@ impl Stage {
         Self::Coupling,
         Self::Velocity,
         Self::Constraints,
+        Self::Deform,
         Self::Scatter,
         Self::Advance,
         Self::Topology,
         Self::Observe,
     ];
+
+    /// The part of a step that the stage belongs to.
+    #[must_use]
+    pub fn part(self) -> Part {
+        match self {
+            Self::Clock | Self::Gather => Part::Begin,
+            Self::Scatter | Self::Advance | Self::Topology | Self::Observe => Part::End,
+            _ => Part::Substep,
+        }
+    }
 }
 
-/// An empty schedule with the stages chained, the single-threaded executor (parallelism lives inside systems), and
-/// ambiguity as an error: two systems that touch the same data must be ordered.
+/// A part of a step: what runs before, in and after its substeps. Label of a schedule.
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// Once, before the substeps.
+    Begin,
+    /// Once per substep.
+    Substep,
+    /// Once, after the substeps.
+    End,
+}
+
+impl Part {
+    /// Every part, in order.
+    pub const ALL: [Self; 3] = [Self::Begin, Self::Substep, Self::End];
+
+    /// Its stages, in order.
+    pub fn stages(self) -> impl Iterator<Item = Stage> {
+        Stage::ALL.into_iter().filter(move |stage| stage.part() == self)
+    }
+}
+
+/// An empty schedule of a part with its stages chained, the single-threaded executor (parallelism lives inside systems),
+/// and ambiguity as an error: two systems that touch the same data must be ordered.
 #[must_use]
-pub fn staged_schedule(label: impl ScheduleLabel) -> Schedule {
-    let mut schedule = Schedule::new(label);
+pub fn staged_schedule(part: Part) -> Schedule {
+    let mut schedule = Schedule::new(part);
     schedule.set_executor(SingleThreadedExecutor::new());
     schedule.set_build_settings(ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..Default::default() });
-    use Stage as S;
-    schedule.configure_sets(
-        (
-            (S::Clock, S::Gather, S::Geometry, S::Forces, S::Dynamics, S::Coupling).chain(),
-            (S::Velocity, S::Constraints, S::Scatter, S::Advance, S::Topology, S::Observe).chain(),
-        )
-            .chain(),
-    );
+    let stages: Vec<Stage> = part.stages().collect();
+    for pair in stages.windows(2) {
+        schedule.configure_sets((pair[0], pair[1]).chain());
+    }
     schedule
 }

@@ -96,6 +96,10 @@ pub struct MelpSettings {
     /// the film moves along its normal alone, under the tension it has at rest.
     #[serde(deserialize_with = "range::particles_per_carrier")]
     pub liquid_per_carrier: u32,
+    /// Most steps of the film's own motion (tension, gas, Marangoni flow) in one step of the liquid, 1 to 1000. The liquid moves
+    /// once per step, by its mean flow. Default 8; 1 moves both together.
+    #[serde(deserialize_with = "range::substeps")]
+    pub substeps: u32,
     /// Inertia of the air that the film must push aside. Default [`AirInertia::Local`].
     pub air: AirInertia,
     /// Gas inside bubbles. Default [`Gas::Isothermal`].
@@ -116,6 +120,7 @@ impl Default for MelpSettings {
         Self {
             cfl: Ratio::from_si(0.99),
             liquid_per_carrier: 16,
+            substeps: 8,
             air: AirInertia::Local,
             gas: Gas::Isothermal,
             transfer: Transfer::Affine,
@@ -128,7 +133,7 @@ impl Default for MelpSettings {
 /// Air that moves with the film's normal motion, as mass per area of film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 pub enum AirInertia {
-    /// The film moves its own mass alone. Demands steps of a millisecond or less.
+    /// The film moves its own mass alone. Demands substeps of a millisecond or less.
     None,
     /// `0.4 ρ_air R` with the size `R` of the film: an estimate, the same for all modes.
     #[default]

@@ -115,6 +115,14 @@ pub fn particles_per_carrier<'de, De: Deserializer<'de>>(deserializer: De) -> Re
     )
 }
 
+/// Substeps of a step: 1 to 1000.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn substeps<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 1000, "a step has 1 to 1000 substeps")
+}
+
 fn small_count<'de, De: Deserializer<'de>>(deserializer: De, largest: u32, rule: &str) -> Result<u32, De::Error> {
     at_most(Count::deserialize(deserializer)?.get(), largest, rule)
 }

@@ -54,11 +54,12 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
-    plan.add(Stage::Clock, "limit the step by tension", normal_motion::limit_step_by_tension, always());
+    plan.add(Stage::Clock, "limit substeps by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "link the particle sets and gather liquid (L2E)", gather::gather_liquid, liquid());
+    plan.add(Stage::Gather, "measure concentration", measure::measure_concentration, liquid());
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
-    plan.add(Stage::Geometry, "measure concentration and thickness", measure::measure_film, liquid());
+    plan.add(Stage::Geometry, "measure thickness", measure::measure_thickness, liquid());
     plan.add(Stage::Geometry, "measure gas pressure", measure::measure_pressure, always());
     plan.add(Stage::Forces, "clear external forces", forces::clear, always());
     plan.add(Stage::Forces, "gravity", forces::pull_by_gravity, Requires::component::<Gravity>("gravity"));
@@ -70,10 +71,10 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Dynamics, "accelerate the liquid", inertia::accelerate_liquid, liquid());
     plan.add(Stage::Dynamics, "solve for concentration and flow (Marangoni)", marangoni::solve_marangoni, elastic());
     plan.add(Stage::Velocity, "write velocities", inertia::write_velocity, always());
+    plan.add(Stage::Deform, "move carriers with the film", carriers::deform_film, always());
     plan.add(Stage::Scatter, "scatter the flow (E2L)", scatter::scatter_flow, liquid());
     let heated = liquid().and(Requires::component::<HeatSource>("a heat source"));
     plan.add(Stage::Advance, "warm the liquid", forces::heat::warm_liquid, heated);
-    plan.add(Stage::Advance, "move carriers with the film", carriers::advance_carriers, always());
     plan.add(Stage::Advance, "redistribute carriers", carriers::redistribute_carriers, always());
     plan.add(Stage::Advance, "move liquid and project it", material::advance_material, liquid());
     plan.add(Stage::Topology, "sort the liquid's rows", sorting::sort_material, liquid());

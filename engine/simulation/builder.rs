@@ -199,6 +199,6 @@ fn assemble(method: &Method, world: &mut World) -> SchedulePlan {
     (method.assemble)(&mut plan);
     plan.add(Stage::Clock, "choose the step length", choose_step_length, Requires::nothing());
     plan.add(Stage::Observe, "check for finite values", check_finite, Requires::nothing());
-    StageTimes::install(world, plan.schedule_mut());
+    StageTimes::install(world, &mut plan);
     plan
 }

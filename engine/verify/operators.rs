@@ -77,7 +77,7 @@ fn transfers(walled: &Sampled) -> Vec<Finding> {
         positions: walled.positions(),
         normals: &walled.film.normals,
         regions: &walled.regions,
-        stencil: &walled.stencil,
+        cells: &walled.stencil.cells,
         spacing: walled.spacing,
     };
     let between = DVec3::new(0.31, 0.17, 0.0) * walled.spacing;

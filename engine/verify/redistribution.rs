@@ -140,7 +140,7 @@ fn shown(film: &Sampled, concentration: &[f64]) -> Vec<f64> {
         positions: film.positions(),
         normals: &film.film.normals,
         regions: &film.regions,
-        stencil: &film.stencil,
+        cells: &film.stencil.cells,
         spacing: film.spacing,
     };
     let (positions, normals) = (&film.film.liquid_positions, &film.film.liquid_normals);

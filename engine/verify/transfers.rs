@@ -90,7 +90,7 @@ impl Pair {
             positions: self.carriers.positions(),
             normals: &self.carriers.film.normals,
             regions: &self.carriers.regions,
-            stencil: &self.carriers.stencil,
+            cells: &self.carriers.stencil.cells,
             spacing: self.carriers.spacing,
         }
     }
@@ -116,11 +116,16 @@ impl Pair {
         let velocity: Vec<DVec3> = gathered.iter().map(flow).collect();
         let still = vec![DVec3::ZERO; velocity.len()];
         let concentration = vec![0.0; velocity.len()];
-        let flow = CarrierFlow { velocity: &velocity, change: &still, concentration: &concentration };
+        let flow = CarrierFlow { velocity: &velocity, change: &still, drift: &[], concentration: &concentration };
         let (mut velocities, mut gradients) = (self.velocities.clone(), self.gradients.clone());
-        let mut shown = vec![0.0; self.positions.len()];
+        let (mut shown, mut drift) = (vec![0.0; self.positions.len()], vec![DVec3::ZERO; self.positions.len()]);
         let blend = Blend { affine: true, flip: 0.0 };
-        let received = Received { velocities: &mut velocities, gradients: &mut gradients, concentration: &mut shown };
+        let received = Received {
+            velocities: &mut velocities,
+            gradients: &mut gradients,
+            concentration: &mut shown,
+            drift: &mut drift,
+        };
         scatter_all(self.carriers_of(), flow, self.rows(), &self.links, blend, received);
         (self.velocities, self.gradients) = (velocities, gradients);
     }

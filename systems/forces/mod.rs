@@ -49,7 +49,7 @@ pub fn drag_by_wind(
     let (velocities, mut pushes) = columns_mut(&mut carriers);
     let pushes = pushes.bypass_change_detection();
     for wind in &winds {
-        let (air, rate) = (wind.velocity.at(clock.time).si(), relaxation(wind.drag.si(), clock.step_length));
+        let (air, rate) = (wind.velocity.at(clock.time).si(), relaxation(wind.drag.si(), clock.substep_length()));
         pushes.iter_mut().zip(velocities).for_each(|(push, u)| push.0 += (air - u.0) * rate);
     }
 }
@@ -66,11 +66,11 @@ pub fn brake_in_air(
     clock: Res<Clock>,
 ) {
     let (velocities, normals, speeds, thickness, mut pushes, mut pressures) = columns_mut(&mut carriers);
-    let along = relaxation(drags.iter().map(|drag| drag.rate.si()).sum(), clock.step_length);
+    let along = relaxation(drags.iter().map(|drag| drag.rate.si()).sum(), clock.substep_length());
     for ((push, u), n) in pushes.bypass_change_detection().iter_mut().zip(velocities).zip(normals) {
         push.0 -= (u.0 - n.0 * n.0.dot(u.0)) * along;
     }
-    let across = relaxation(drags.iter().map(|drag| drag.normal.si()).sum(), clock.step_length);
+    let across = relaxation(drags.iter().map(|drag| drag.normal.si()).sum(), clock.substep_length());
     let pressures = pressures.bypass_change_detection();
     for film in &lamellae.films {
         for i in film.carriers.clone() {

@@ -1,7 +1,8 @@
-//! E advance: carriers move with the film's normal motion, refit their frames, and spread out evenly.
+//! E advance: carriers move with the film's normal motion and refit their frames in every substep, and spread out evenly
+//! after the last.
 //!
 //! # Equation
-//! `x += zeta n`; then tangential displacements by [`redistribution`](super::redistribution).
+//! `x += zeta n`; at last tangential displacements by [`redistribution`](super::redistribution).
 //!
 //! # Source
 //! Deng 2022, Algorithm 6, Eq. 19. DEVIATION: no persistent tangential velocity of carriers; redistribution places
@@ -10,7 +11,7 @@
 use super::normal_motion::NormalMotion;
 use super::redistribution::{EVEN_ENOUGH, Spread, lift, unevenness};
 use super::settings::Melp;
-use super::state::{FilmStencil, Solvers};
+use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use crate::observe::{Fault, Faults, Observables};
 use crate::operators::quadratic::refit_all;
 use crate::operators::stencil::{FIT_SUPPORT, Points, Stencil};
@@ -18,11 +19,12 @@ use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
 use froth_components::film::{ShapeOperator, SurfaceTension, Surfactant};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle};
 use froth_components::lamella::Lamellae;
-use froth_components::motion::{Normal, NormalSpeed, Position};
+use froth_components::motion::{Normal, NormalSpeed, Position, Velocity};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -35,17 +37,24 @@ type Places<'w, 's> = Query<
     (With<EulerianParticle>, Without<BoundaryParticle>),
 >;
 
-/// Moves the carriers along their normals, rebuilds the stencil there and refits normals and shape operators.
-pub fn advance_carriers(
+/// Moves the carriers along their normals, rebuilds the stencil there and refits normals and shape operators; the flow
+/// turns with the normals.
+pub fn deform_film(
     mut carriers: Places,
+    mut moving: Query<(&NormalSpeed, &mut Velocity), With<EulerianParticle>>,
     walls: Query<(&Position, &InRegion), With<BoundaryParticle>>,
     lamellae: Res<Lamellae>,
     motion: Res<NormalMotion>,
+    clock: Res<Clock>,
+    transfers: Res<Transfers>,
     mut stencil: ResMut<FilmStencil>,
+    mut flow: ResMut<TangentialFlow>,
 ) {
     let (regions, mut positions, mut normals, mut shapes) = columns_mut(&mut carriers);
     let positions = positions.bypass_change_detection();
     let normals = normals.bypass_change_detection();
+    flow.follow(&transfers.normals, normals, clock.substep_length());
+    let before = normals.to_vec();
     for ((x, n), zeta) in positions.iter_mut().zip(&*normals).zip(&motion.displacement) {
         x.0 += n.0 * *zeta;
     }
@@ -53,6 +62,11 @@ pub fn advance_carriers(
     let spacing = lamellae.spacing;
     stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
     refit(&stencil.0, spacing, positions, normals, shapes.bypass_change_detection());
+    flow.turn(&before, normals);
+    let (speeds, mut velocities) = columns_mut(&mut moving);
+    for (i, velocity) in velocities.bypass_change_detection().iter_mut().enumerate() {
+        velocity.0 = flow.present.get(i).copied().unwrap_or_default() + normals[i].0 * speeds[i].0;
+    }
 }
 
 /// Refits every normal and shape operator from the carriers' places.

@@ -205,9 +205,10 @@ impl DiscreteFilm {
             positions: &self.positions,
             normals: &self.normals,
             regions: &regions,
-            stencil,
+            cells: &stencil.cells,
             spacing: sampling.spacing,
         };
+        let duals = dual_areas(carriers, &stencil.areas);
         let liquid_regions = vec![region; points.len()];
         let mut positions: Vec<Position> = points.iter().map(|p| Position(p.position)).collect();
         let mut normals: Vec<Normal> = points.iter().map(|p| Normal(p.normal)).collect();
@@ -216,6 +217,7 @@ impl DiscreteFilm {
         let moving = MovingMaterial {
             positions: &mut positions,
             normals: &mut normals,
+            drift: &vec![DVec3::ZERO; points.len()],
             velocities: &mut still,
             gradients: &mut gradients,
             regions: &liquid_regions,
@@ -223,7 +225,7 @@ impl DiscreteFilm {
         let rim = self.rim;
         advance_all(moving, carriers, &self.shapes, 0.0, |_| rim);
         let rows = Rows { positions: &positions, normals: &normals, regions: &liquid_regions };
-        let areas = fair_areas(carriers, rows);
+        let areas = fair_areas(carriers, &duals, rows);
         let places: Vec<DVec3> = positions.iter().map(|p| p.0).collect();
         let extent = Extent { places: &places, centre: authored.shape.centre(), size: self.size, seed: authored.seed };
         self.thickness = extent.thickness(&authored.film.thickness);
@@ -231,7 +233,6 @@ impl DiscreteFilm {
         let gamma = |l: usize| sampling.reference_surfactant * concentration[l];
         self.volumes = self.thickness.iter().zip(&areas).map(|(eta, a)| LiquidVolume(eta * a)).collect();
         self.amounts = areas.iter().enumerate().map(|(l, a)| SurfactantAmount(a * gamma(l))).collect();
-        let duals = dual_areas(carriers);
         let gathered = gather_scalar(carriers, rows, &mut Vec::new(), |l| areas[l] * gamma(l));
         self.concentration = gathered.iter().zip(&duals).map(|(s, a)| s / a).collect();
         self.liquid_velocities = initial_flow(&extent, &normals, authored);
@@ -250,8 +251,7 @@ fn in_morton_order(points: Vec<FilmPoint>, spacing: f64) -> Vec<FilmPoint> {
 }
 
 /// Areas of the material particles which, gathered, give the carriers' dual areas.
-fn fair_areas(carriers: Carriers, rows: Rows) -> Vec<f64> {
-    let duals = dual_areas(carriers);
+fn fair_areas(carriers: Carriers, duals: &[f64], rows: Rows) -> Vec<f64> {
     let whole: f64 = duals.iter().sum();
     let mut areas = vec![whole / rows.positions.len() as f64; rows.positions.len()];
     let mut links = Vec::new();

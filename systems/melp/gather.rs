@@ -209,7 +209,7 @@ pub fn gather_liquid(
 ) {
     let (positions, normals, regions, ids, speeds, mut volumes, mut surfactants, mut warmth, mut velocities) =
         columns_mut(&mut carriers);
-    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let carriers = Carriers { positions, normals, regions, cells: &stencil.0.cells, spacing: lamellae.spacing };
     let gathered = gather_all(carriers, Material::of(&material), &mut transfers.links);
     if let Some(row) = gathered.iter().position(|g| !(g.volume > 0.0)) {
         let detail = "has no liquid left: the film is thinner here than the material particles can show; \
@@ -218,8 +218,10 @@ pub fn gather_liquid(
         faults.report(fault.on_particle("eulerian", row, Some(ids[row].0)));
         return;
     }
-    flow.gathered.clear();
-    flow.gathered.extend(gathered.iter().map(|g| g.momentum / g.volume));
+    positions.clone_into(&mut transfers.positions);
+    normals.clone_into(&mut transfers.normals);
+    transfers.cells.clone_from(&stencil.0.cells);
+    flow.begin(gathered.iter().map(|g| g.momentum / g.volume));
     for (i, g) in gathered.iter().enumerate() {
         volumes.bypass_change_detection()[i].0 = g.volume;
         surfactants.bypass_change_detection()[i].0 = g.surfactant;

@@ -1,7 +1,7 @@
 //! The liquid's own tangential acceleration before tension answers it.
 //!
 //! # Equation
-//! `u* = u + dt [ f_t + grad(s^2/2) - s S u - drag u + nu lap u ]`
+//! `u* = u + dt [ f_t + grad(s^2/2) - s S u + nu lap u ]`
 //!
 //! The second and third terms come from the film's own motion: seen along a particle, `D(u + s n)/Dt` has the
 //! tangential part `Du/Dt + s (S u - grad s)`.
@@ -80,11 +80,11 @@ pub fn accelerate_liquid(
     mut flow: ResMut<TangentialFlow>,
 ) {
     let (positions, normals, shapes, pushes) = columns(&carriers);
-    let (stencil, step) = (&stencil.0, clock.step_length);
+    let (stencil, step) = (&stencil.0, clock.substep_length());
+    let speed = |i: usize| motion.displacement[i] / step;
     let accelerated = |i: usize| {
-        let (n, u) = (normals[i].0, flow.gathered[i]);
-        let own = stencil.gradient(positions, normals, i, |j| motion.kinetic[j])
-            - shapes[i].0 * u * (motion.displacement[i] / step);
+        let (n, u) = (normals[i].0, flow.present[i]);
+        let own = stencil.gradient(positions, normals, i, |j| 0.5 * speed(j) * speed(j)) - shapes[i].0 * u * speed(i);
         u + (tangential(pushes[i].0, n) + own) * step
     };
     let mut velocities: Vec<DVec3> = (0..stencil.len()).into_par_iter().with_min_len(128).map(accelerated).collect();

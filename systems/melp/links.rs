@@ -14,8 +14,9 @@
 use super::settings::TRANSFER_SUPPORT;
 use super::state::FilmStencil;
 use super::tiles::{Hit, Rows};
+use crate::neighbours::cells::CellList;
 use crate::neighbours::kernel::Kernel;
-use crate::operators::stencil::{Points, Stencil};
+use crate::operators::stencil::Points;
 use crate::operators::tangent::{plane_inverse, plane_outer};
 use crate::rows::columns;
 use bevy_ecs::query::With;
@@ -35,8 +36,8 @@ pub struct Carriers<'a> {
     pub normals: &'a [Normal],
     /// Regions.
     pub regions: &'a [InRegion],
-    /// Their stencil, whose cells find them by place.
-    pub stencil: &'a Stencil,
+    /// Their cells, which find them by place.
+    pub cells: &'a CellList,
     /// Spacing, m.
     pub spacing: f64,
 }

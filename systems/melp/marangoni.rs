@@ -130,7 +130,7 @@ pub fn solve_marangoni(
     liquid: Res<Liquid>,
     melp: Res<Melp>,
     clock: Res<Clock>,
-    transfers: Res<Transfers>,
+    mut transfers: ResMut<Transfers>,
     motion: Res<NormalMotion>,
     mut flow: ResMut<TangentialFlow>,
     mut solvers: ResMut<Solvers>,
@@ -140,7 +140,7 @@ pub fn solve_marangoni(
     let (positions, normals, curvature, thickness, mut surfactant, mut tension) = columns_mut(&mut carriers);
     let surfactant = surfactant.bypass_change_detection();
     let tension = tension.bypass_change_detection();
-    let step = clock.step_length;
+    let step = clock.substep_length();
     let stretching: Vec<f64> =
         (0..positions.len()).map(|i| stencil.0.areas[i] * curvature[i].0 * motion.displacement[i] / step).collect();
     let problem = MarangoniProblem {
@@ -168,6 +168,7 @@ pub fn solve_marangoni(
         surfactant[i].0 = *gamma;
         tension[i].0 = liquid.tension_at(*gamma);
     }
+    transfers.concentration = concentration;
     if let Some(row) = tension.iter().position(|t| !(t.0 > 0.0)) {
         let detail = format!(
             "is {:.3e} N/m: so much surfactant is crowded here that the film would spread by itself; \

@@ -1,7 +1,7 @@
 //! Moves the liquid with the flow and lays it back onto the film.
 //!
 //! # Equation
-//! `x += dt (u + dt/2 A u)`, then twice `x -= phi n` with the film blended from its carriers' quadratics,
+//! `x += dt (u_mean + dt/2 A u_mean)`, then twice `x -= phi n` with the film blended from its carriers' quadratics,
 //! `phi = sum W h_E / sum W`, `h_E` the height above carrier E's quadratic. `u` and `A` turn with the normal.
 //!
 //! # Source
@@ -9,7 +9,7 @@
 //! need no solve per particle.
 
 use super::links::Carriers;
-use super::state::FilmStencil;
+use super::state::{FilmStencil, Transfers};
 use super::tiles::{PIECE, Rows, Tile};
 use crate::observe::{Fault, Faults};
 use crate::operators::quadratic::height_above;
@@ -43,6 +43,8 @@ pub struct MovingMaterial<'a> {
     pub positions: &'a mut [Position],
     /// Unit normals.
     pub normals: &'a mut [Normal],
+    /// Velocities to move by.
+    pub drift: &'a [DVec3],
     /// Tangential velocities.
     pub velocities: &'a mut [Velocity],
     /// Velocity gradients.
@@ -60,12 +62,12 @@ pub fn advance_all(
     step: f64,
     rim: impl Fn(InRegion) -> Option<Rim> + Sync,
 ) -> usize {
-    let MovingMaterial { positions, normals, velocities, gradients, regions } = material;
-    let places = positions.par_chunks_mut(PIECE).zip(normals.par_chunks_mut(PIECE));
+    let MovingMaterial { positions, normals, drift, velocities, gradients, regions } = material;
+    let places = positions.par_chunks_mut(PIECE).zip(normals.par_chunks_mut(PIECE)).zip(drift.par_chunks(PIECE));
     let flow = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE));
     let pieces = places.zip(flow).zip(regions.par_chunks(PIECE));
-    let advance = |projector: &mut Projector, (((positions, normals), (velocities, gradients)), regions)| {
-        let piece = MovingMaterial { positions, normals, velocities, gradients, regions };
+    let advance = |projector: &mut Projector, ((((positions, normals), drift), (velocities, gradients)), regions)| {
+        let piece = MovingMaterial { positions, normals, drift, velocities, gradients, regions };
         projector.advance(piece, carriers, shapes, step, &rim)
     };
     pieces.map_init(Projector::default, advance).sum()
@@ -93,9 +95,8 @@ impl Projector {
         step: f64,
         rim: impl Fn(InRegion) -> Option<Rim>,
     ) -> usize {
-        let MovingMaterial { positions, normals, velocities, gradients, regions } = material;
-        let moved =
-            |l: usize| confined(rim(regions[l]), drifted(positions[l].0, velocities[l].0, gradients[l].0, step));
+        let MovingMaterial { positions, normals, drift, velocities, gradients, regions } = material;
+        let moved = |l: usize| confined(rim(regions[l]), drifted(positions[l].0, drift[l], gradients[l].0, step));
         self.places.clear();
         self.places.extend((0..positions.len()).map(|l| Position(moved(l))));
         self.normals.clear();
@@ -156,15 +157,17 @@ pub fn advance_material(
     >,
     lamellae: Res<Lamellae>,
     stencil: Res<FilmStencil>,
+    transfers: Res<Transfers>,
     clock: Res<Clock>,
     mut faults: ResMut<Faults>,
 ) {
     let (positions, normals, regions, shapes) = columns(&carriers);
-    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let carriers = Carriers { positions, normals, regions, cells: &stencil.0.cells, spacing: lamellae.spacing };
     let (regions, mut positions, mut normals, mut velocities, mut gradients) = columns_mut(&mut material);
     let moving = MovingMaterial {
         positions: positions.bypass_change_detection(),
         normals: normals.bypass_change_detection(),
+        drift: &transfers.drift,
         velocities: velocities.bypass_change_detection(),
         gradients: gradients.bypass_change_detection(),
         regions,

@@ -32,10 +32,9 @@ use froth_components::motion::{Normal, Position};
 use glam::DVec3;
 use std::ops::Range;
 
-/// The dual area of every carrier, m^2.
+/// The dual area of every carrier, m^2, given their areas.
 #[must_use]
-pub fn dual_areas(carriers: Carriers) -> Vec<f64> {
-    let areas = &carriers.stencil.areas;
+pub fn dual_areas(carriers: Carriers, areas: &[f64]) -> Vec<f64> {
     gather_scalar(carriers, carriers.rows(), &mut Vec::new(), |i| areas[i])
 }
 
@@ -88,28 +87,33 @@ fn mean_curvature(
     -pull.dot(normals[i].0) / stencil.areas[i]
 }
 
-/// Measures concentration and thickness from what was gathered.
-pub fn measure_film(
-    mut carriers: Query<
-        (&Position, &Normal, &InRegion, &LiquidVolume, &SurfactantAmount, &Surfactant, &mut Thickness),
-        With<EulerianParticle>,
-    >,
+/// Measures the concentration of what was gathered.
+pub fn measure_concentration(
+    carriers: Query<(&Position, &Normal, &InRegion, &SurfactantAmount), With<EulerianParticle>>,
     lamellae: Res<Lamellae>,
-    liquid: Res<Liquid>,
     stencil: Res<FilmStencil>,
     mut transfers: ResMut<Transfers>,
 ) {
-    let (positions, normals, regions, volumes, amounts, surfactant, mut thickness) = columns_mut(&mut carriers);
-    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
-    let areas = dual_areas(carriers);
-    let eta = thickness.bypass_change_detection();
-    let elastic = liquid.elasticity > 0.0;
-    for i in 0..areas.len() {
-        eta[i].0 = if elastic { volumes[i].0 / amounts[i].0 * surfactant[i].0 } else { volumes[i].0 / areas[i] };
-    }
+    let (positions, normals, regions, amounts) = columns(&carriers);
+    let carriers = Carriers { positions, normals, regions, cells: &stencil.0.cells, spacing: lamellae.spacing };
+    let areas = dual_areas(carriers, &stencil.0.areas);
     transfers.concentration.clear();
     transfers.concentration.extend(amounts.iter().zip(&areas).map(|(s, a)| s.0 / a));
     transfers.dual_areas = areas;
+}
+
+/// Measures the thickness: the liquid per surfactant stays as gathered while the concentration changes.
+pub fn measure_thickness(
+    mut carriers: Query<(&LiquidVolume, &SurfactantAmount, &Surfactant, &mut Thickness), With<EulerianParticle>>,
+    liquid: Res<Liquid>,
+    transfers: Res<Transfers>,
+) {
+    let (volumes, amounts, surfactant, mut thickness) = columns_mut(&mut carriers);
+    let elastic = liquid.elasticity > 0.0;
+    for (i, eta) in thickness.bypass_change_detection().iter_mut().enumerate() {
+        let area = if elastic { amounts[i].0 / surfactant[i].0 } else { transfers.dual_areas[i] };
+        eta.0 = volumes[i].0 / area;
+    }
 }
 
 /// Sets the surface tension that a film without surfactant has everywhere.
@@ -142,7 +146,7 @@ pub fn measure_pressure(
         if film.encloses_gas() {
             let rows = film.carriers.clone();
             let measured = enclosed_volume(positions, normals, &stencil.0.areas, rows, film.volume_origin());
-            let share = -(-clock.step_length / VOLUME_MEMORY).exp_m1();
+            let share = -(-clock.substep_length() / VOLUME_MEMORY).exp_m1();
             let follow = share * (measured - volume.0);
             observables.record(&format!("measured_volume_{}", film.region.0), "m^3", measured);
             observables.record("volume_followed", "1", follow / volume.0);

@@ -4,12 +4,8 @@
 //! `(rho eta + m_air) ds/dt = q - 2 sigma kappa + P_ext + rho eta (f . n + u . S u)`, `q = p_in - p_out`.
 //!
 //! # Discretisation
-//! Symplectic Euler in substeps `d <= 0.8 dx / c`, `c = sqrt(2 sigma / (rho eta + m_air))`, on the pair weights and
-//! normals of the step's start: one per step, or several where a method asks for longer steps. With displacement `zeta` along the normal the frozen pair force is linear,
-//! `f = f0 + K zeta`; two terms mend what freezing loses:
-//!
-//! * `+4 sigma a |S|^2 zeta`: freezing gives `lap - |S|^2`, the second variation of area is `lap + |S|^2`;
-//! * flux area `a (1 + kappa zeta)` in the volume and in the work of the gas.
+//! Symplectic Euler in substeps `d <= 0.8 dx / c`, `c = sqrt(2 sigma / (rho eta + m_air))`, each on its own geometry. The
+//! flux through the middle of the move, `a (1 + kappa zeta/2)`, changes the volume.
 //!
 //! The gas is implicit in closed form (a rank-one system): stable at 1 atm, where the breathing mode of a 5 cm bubble
 //! would demand steps of 1e-5 s. Its volume is a state, advanced by the film's own flux.
@@ -25,9 +21,11 @@
 //! `-2 u . grad s` (the film's own advection of its normal momentum) is left out: relative error `u/c`, a few per cent
 //! of the film's share of the inertia.
 
+use super::settings::Melp;
 use super::state::FilmStencil;
 use crate::clock::StepLimits;
 use crate::operators::stencil::Stencil;
+use crate::operators::tangent::outer;
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
@@ -48,22 +46,11 @@ use std::ops::Range;
 
 /// Longest substep, in units of `dx / c`. The fastest modes have 1.67 c/dx on even carriers and 1.93 c/dx on noisy ones;
 /// symplectic Euler is stable below 2, so the explicit limit is 1.0 to 1.2.
+///
+/// Several moves on one frozen geometry do not pay: what is held over them feeds modes that turn by half a period or more
+/// (four moves of 0.4 dx/c: 3 % per step, every bubble without drag rang by itself), and slow modes grow or fade with the
+/// square of the step (three: shape mode 2 of 500 carriers grew by 0.5 per second).
 pub const SUBSTEP: f64 = 0.8;
-
-/// Most substeps on one frozen geometry: one, which never uses the frozen `K` and neither feeds nor damps any mode.
-///
-/// With several, what is held over a step feeds modes that turn by half a period or more in it (four substeps of 0.4 dx/c
-/// with `STIFFENING`: 3 % per step, every bubble without drag rang by itself), and slow modes grow or fade with the step
-/// squared (three: shape mode 2 of 500 carriers grew by 0.5 per second).
-pub const SUBSTEPS_PER_GEOMETRY: f64 = 1.0;
-/// Part of a substep by which a step may be longer than whole substeps.
-const ROUNDING: f64 = 1e-5;
-/// Factor on the stiffness `K` within a step of several substeps, dimensionless.
-///
-/// The next step's geometry answers a displacement by a stiffness that differs from the frozen `K` by a relative `e`
-/// (irregular neighbours turn the normals). Over a step a mode then grows by `1 + e/2 (1 - cos w dt)`. A `K` stiffer than
-/// any real response makes `e < 0`.
-const STIFFENING: f64 = 1.5;
 
 /// What the normal motion reads; all slices are per carrier.
 #[derive(Clone, Copy)]
@@ -78,8 +65,6 @@ pub struct NormalForces<'a> {
     pub normals: &'a [Normal],
     /// Surface tension of one interface, N/m.
     pub tension: &'a [f64],
-    /// `|S|^2`, the sum of squared principal curvatures, 1/m^2.
-    pub squared_curvature: &'a [f64],
     /// Sum of principal curvatures, 1/m.
     pub curvature: &'a [f64],
     /// External force per area along the normal: pressures, weight, centrifugal force, Pa.
@@ -88,8 +73,6 @@ pub struct NormalForces<'a> {
     pub tangential: &'a [DVec3],
     /// Inertia per area, film and air, kg/m^2.
     pub inertia: &'a [f64],
-    /// Spacing, m.
-    pub spacing: f64,
 }
 
 /// The gas inside a closed film.
@@ -103,15 +86,11 @@ pub struct EnclosedGas {
     pub outside: f64,
 }
 
-/// What the normal motion did over a step.
+/// What the normal motion did over a substep.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct NormalMotion {
     /// Displacement `zeta` along the normal, m, per carrier.
     pub displacement: Vec<f64>,
-    /// Mean of `s^2/2` over the step, m^2/s^2, per carrier.
-    pub kinetic: Vec<f64>,
-    /// Substeps taken by the film that needed most.
-    pub substeps: u32,
     /// Largest rigid correction of the normal speed by the balance of momentum, m/s.
     pub momentum_correction: f64,
 }
@@ -119,25 +98,13 @@ pub struct NormalMotion {
 impl NormalMotion {
     /// Zero motion of `count` carriers.
     pub fn reset(&mut self, count: usize) {
-        for column in [&mut self.displacement, &mut self.kinetic] {
-            column.clear();
-            column.resize(count, 0.0);
-        }
-        self.substeps = 0;
+        self.displacement.clear();
+        self.displacement.resize(count, 0.0);
         self.momentum_correction = 0.0;
     }
 }
 
 impl NormalForces<'_> {
-    /// Longest substep for the rows of one film, s.
-    #[must_use]
-    pub fn longest_substep(&self, rows: Range<usize>) -> f64 {
-        let start = rows.start;
-        let stiffest = |i: usize| 2.0 * self.tension[start + i] / self.inertia[start + i];
-        let squared_speed = ordered_max(rows.len(), 0.0, stiffest);
-        if squared_speed > 0.0 { SUBSTEP * self.spacing / squared_speed.sqrt() } else { f64::INFINITY }
-    }
-
     /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for a film that
     /// encloses none; `is_free`: no rim holds it, so forces within it balance.
     pub fn advance(
@@ -149,171 +116,59 @@ impl NormalForces<'_> {
         is_free: bool,
         motion: &mut NormalMotion,
     ) {
-        let count = (step / self.longest_substep(rows.clone()) - ROUNDING).ceil().clamp(1.0, 1e6) as u32;
-        let film = FrozenFilm::new(self, rows.clone(), step / f64::from(count), is_free);
-        let mut speeds = FilmState {
-            speed: &mut speeds[rows.clone()],
-            displacement: &mut motion.displacement[rows.clone()],
-            kinetic: &mut motion.kinetic[rows],
-        };
-        let mut gas = gas;
-        for _ in 0..count {
-            let correction = film.substep(&mut speeds, gas.as_deref_mut());
-            motion.momentum_correction = motion.momentum_correction.max(correction);
+        let areas = &self.stencil.areas[rows.clone()];
+        let mass: Vec<f64> = areas.iter().zip(&self.inertia[rows.clone()]).map(|(a, m)| a * m).collect();
+        let tension: Vec<f64> = rows.clone().into_par_iter().with_min_len(256).map(|i| self.tension_on(i)).collect();
+        let speeds = &mut speeds[rows.clone()];
+        for (k, s) in speeds.iter_mut().enumerate() {
+            *s += step * (tension[k] + self.load[rows.start + k] * areas[k]) / mass[k];
         }
-        speeds.kinetic.iter_mut().for_each(|k| *k /= f64::from(count));
-        motion.substeps = motion.substeps.max(count);
-    }
-}
-
-/// The part of the state that belongs to one film.
-struct FilmState<'a> {
-    speed: &'a mut [f64],
-    displacement: &'a mut [f64],
-    kinetic: &'a mut [f64],
-}
-
-/// One film's forces, linear in the displacement.
-struct FrozenFilm<'a> {
-    forces: &'a NormalForces<'a>,
-    rows: Range<usize>,
-    substep: f64,
-    /// `f0`, N, without the load.
-    rest_force: Vec<f64>,
-    /// Diagonal of `K`, N/m.
-    diagonal: Vec<f64>,
-    /// Off-diagonal entries of `K` beside the stencil's neighbours of `rows`, N/m.
-    coupling: Vec<f64>,
-    /// Mass per carrier, kg.
-    mass: Vec<f64>,
-    /// Balance of momentum, for closed films.
-    balance: Option<Balance>,
-}
-
-/// What the balance of momentum of a closed film needs.
-struct Balance {
-    /// `(sum M n n^T)^-1`, 1/kg.
-    inverse_mass: DMat3,
-    /// Total tangential force by the tension's gradient, N.
-    tangential: DVec3,
-}
-
-impl<'a> FrozenFilm<'a> {
-    fn new(forces: &'a NormalForces<'a>, rows: Range<usize>, substep: f64, closed: bool) -> Self {
-        let start = rows.start;
-        let local = |f: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
-            rows.clone().into_par_iter().with_min_len(256).map(f).collect()
-        };
-        let mass = local(&|i| forces.stencil.areas[i] * forces.inertia[i]);
-        let balance = closed.then(|| {
-            let tensor = |k: usize| {
-                let n = forces.normals[start + k].0;
-                crate::operators::tangent::outer(mass[k], n, n)
-            };
-            Balance {
-                inverse_mass: ordered_sum(rows.len(), DMat3::ZERO, tensor).inverse(),
-                tangential: ordered_sum(rows.len(), DVec3::ZERO, |k| {
-                    forces.tangential[start + k] * forces.stencil.areas[start + k]
-                }),
-            }
-        });
-        let span = forces.stencil.lists.offsets[rows.start]..forces.stencil.lists.offsets[rows.end];
-        let mut coupling = vec![0.0; span.len()];
-        let mut rest = coupling.as_mut_slice();
-        for i in rows.clone() {
-            let (own, tail) = rest.split_at_mut(forces.stencil.lists.range(i).len());
-            let n = forces.normals[i].0;
-            for (slot, (j, w)) in own.iter_mut().zip(forces.stencil.pairs(i)) {
-                *slot = STIFFENING * w * (forces.tension[i] + forces.tension[j]) * n.dot(forces.normals[j].0);
-            }
-            rest = tail;
+        let pressure = gas.as_deref().map_or(0.0, |gas| gas.excess_pressure_after(step, areas, &mass, speeds));
+        speeds.iter_mut().zip(areas).zip(&mass).for_each(|((s, a), m)| *s += step * pressure * a / m);
+        if is_free {
+            let shift = self.balance(rows.clone(), &tension, &mass, pressure) * -step;
+            speeds.iter_mut().zip(&self.normals[rows.clone()]).for_each(|(s, n)| *s += n.0.dot(shift));
+            motion.momentum_correction = motion.momentum_correction.max(shift.length());
         }
-        Self {
-            rest_force: local(&|i| forces.rest_force(i)),
-            diagonal: local(&|i| forces.diagonal(i)),
-            coupling,
-            mass,
-            balance,
-            forces,
-            rows,
-            substep,
-        }
-    }
-
-    /// One symplectic substep; returns the rigid correction of the speed, m/s.
-    fn substep(&self, state: &mut FilmState, gas: Option<&mut EnclosedGas>) -> f64 {
-        let d = self.substep;
-        let start = self.rows.start;
-        let before = self.kick(state);
-        let mut pressure_impulse = 0.0;
-        let mut volume = None;
+        let displacement = &mut motion.displacement[rows.clone()];
+        displacement.iter_mut().zip(&*speeds).for_each(|(zeta, s)| *zeta = step * s);
         if let Some(gas) = gas {
-            let rate = ordered_sum(self.rows.len(), 0.0, |k| self.flux_area(state, k) * state.speed[k]);
-            let answer = ordered_sum(self.rows.len(), 0.0, |k| self.flux_area(state, k).powi(2) / self.mass[k]);
-            let stiffness = gas.law.stiffness(gas.volume);
-            let excess = gas.law.pressure(gas.volume) - gas.outside;
-            pressure_impulse = d * (excess - stiffness * d * rate) / (1.0 + stiffness * d * d * answer);
-            volume = Some(gas);
-        }
-        let areas: Vec<f64> = (0..self.rows.len()).map(|k| self.flux_area(state, k)).collect();
-        state.speed.iter_mut().zip(&areas).zip(&self.mass).for_each(|((s, a), m)| *s += pressure_impulse * a / m);
-        let shift = self.balance.as_ref().map_or(DVec3::ZERO, |b| {
-            let inner = ordered_sum(self.rows.len(), DVec3::ZERO, |k| {
-                self.forces.normals[start + k].0 * (before[k] + pressure_impulse * areas[k])
-            });
-            b.inverse_mass * -(inner + b.tangential * d)
-        });
-        let mut gained = 0.0;
-        for (k, area) in areas.iter().enumerate() {
-            state.speed[k] += self.forces.normals[start + k].0.dot(shift);
-            let move_by = d * state.speed[k];
             // The flux through the middle of the move: exact to second order in the displacement.
-            gained += (area + 0.5 * self.forces.stencil.areas[start + k] * self.forces.curvature[start + k] * move_by)
-                * move_by;
-            state.displacement[k] += move_by;
-            state.kinetic[k] += 0.5 * state.speed[k] * state.speed[k];
+            let swept = |k: usize| areas[k] * (1.0 + 0.5 * self.curvature[rows.start + k] * displacement[k]);
+            gas.volume += ordered_sum(areas.len(), 0.0, |k| swept(k) * displacement[k]);
         }
-        if let Some(gas) = volume {
-            gas.volume += gained;
-        }
-        shift.length()
     }
 
-    /// Adds tension and load to the speeds; returns the impulse of the tension alone, N s.
-    fn kick(&self, state: &mut FilmState) -> Vec<f64> {
-        let d = self.substep;
-        let start = self.rows.start;
-        let displacement = &*state.displacement;
-        let base = self.forces.stencil.lists.offsets[start];
-        let tension: Vec<f64> = (0..self.rows.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|k| {
-                let range = self.forces.stencil.lists.range(start + k);
-                let near = self.forces.stencil.lists.indices[range.clone()].iter();
-                let pull: f64 = near
-                    .zip(&self.coupling[range.start - base..range.end - base])
-                    .map(|(&j, c)| c * displacement[j as usize - start])
-                    .sum();
-                d * (self.rest_force[k] + self.diagonal[k] * displacement[k] + pull)
-            })
-            .collect();
-        for (k, s) in state.speed.iter_mut().enumerate() {
-            let load = self.forces.load[start + k] * self.forces.stencil.areas[start + k];
-            *s += (tension[k] + d * load) / self.mass[k];
-        }
-        tension
+    /// The acceleration of a free film's centre by forces within it, which ought to be zero, m/s^2.
+    fn balance(&self, rows: Range<usize>, tension: &[f64], mass: &[f64], pressure: f64) -> DVec3 {
+        let (start, areas) = (rows.start, &self.stencil.areas);
+        let tensor = ordered_sum(mass.len(), DMat3::ZERO, |k| {
+            let n = self.normals[start + k].0;
+            outer(mass[k], n, n)
+        });
+        let force = ordered_sum(mass.len(), DVec3::ZERO, |k| {
+            let i = start + k;
+            self.normals[i].0 * (tension[k] + pressure * areas[i]) + self.tangential[i] * areas[i]
+        });
+        tensor.inverse() * force
     }
+}
 
-    fn flux_area(&self, state: &FilmState, k: usize) -> f64 {
-        let i = self.rows.start + k;
-        self.forces.stencil.areas[i] * (1.0 + self.forces.curvature[i] * state.displacement[k])
+impl EnclosedGas {
+    /// Pressure above the outside at the end of a step in which it pushes a film of the given areas, masses and speeds:
+    /// implicit in closed form, for the volume's answer is the film's own flux.
+    fn excess_pressure_after(&self, step: f64, areas: &[f64], mass: &[f64], speeds: &[f64]) -> f64 {
+        let rate = ordered_sum(areas.len(), 0.0, |k| areas[k] * speeds[k]);
+        let answer = ordered_sum(areas.len(), 0.0, |k| areas[k].powi(2) / mass[k]);
+        let stiffness = self.law.stiffness(self.volume);
+        let excess = self.law.pressure(self.volume) - self.outside;
+        (excess - stiffness * step * rate) / (1.0 + stiffness * step * step * answer)
     }
 }
 
 impl NormalForces<'_> {
-    /// Tension on carrier `i` along its normal at zero displacement, N.
-    fn rest_force(&self, i: usize) -> f64 {
+    /// Tension on carrier `i` along its normal, N.
+    fn tension_on(&self, i: usize) -> f64 {
         let n = self.normals[i].0;
         let film: f64 = self
             .stencil
@@ -326,14 +181,6 @@ impl NormalForces<'_> {
             .map(|(w, d)| 2.0 * self.tension[i] * w * d.dot(n))
             .sum();
         film + rim
-    }
-
-    /// How the tension on carrier `i` changes with its own displacement, N/m.
-    fn diagonal(&self, i: usize) -> f64 {
-        let film: f64 = self.stencil.pairs(i).map(|(j, w)| w * (self.tension[i] + self.tension[j])).sum();
-        let rim: f64 =
-            self.stencil.wall_pairs(self.positions, self.wall, i).map(|(w, _)| 2.0 * self.tension[i] * w).sum();
-        4.0 * self.tension[i] * self.stencil.areas[i] * self.squared_curvature[i] - STIFFENING * (film + rim)
     }
 }
 
@@ -356,7 +203,7 @@ type NormalColumns<'w, 's> = Query<
     (With<EulerianParticle>, Without<BoundaryParticle>, Without<Region>),
 >;
 
-/// Advances every film along its normal by one step; places move later, in the `Advance` stage.
+/// Advances every film along its normal by one substep; places move later, in the `Deform` stage.
 pub fn advance_normal_motion(
     mut carriers: NormalColumns,
     walls: Query<&Position, With<BoundaryParticle>>,
@@ -391,12 +238,10 @@ pub fn advance_normal_motion(
         wall,
         normals,
         tension: &tension,
-        squared_curvature: &per_carrier(&|i| squared_norm(&shapes[i].0)),
         curvature: &per_carrier(&|i| curvature[i].0),
         load: &per_carrier(&load),
         tangential: &tension_gradients(stencil, positions, normals, &tension),
         inertia: &inertia.per_area(thickness),
-        spacing: lamellae.spacing,
     };
     let mut state: Vec<f64> = speeds.iter().map(|s| s.0).collect();
     motion.reset(count);
@@ -410,7 +255,7 @@ pub fn advance_normal_motion(
             film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
         forces.advance(
             film.carriers.clone(),
-            clock.step_length,
+            clock.substep_length(),
             &mut state,
             gas.as_mut(),
             film.rim.is_none(),
@@ -448,56 +293,17 @@ fn tension_gradients(stencil: &Stencil, positions: &[Position], normals: &[Norma
         .collect()
 }
 
-/// Sum of the squared entries: of a shape operator, the sum of squared principal curvatures.
-fn squared_norm(m: &DMat3) -> f64 {
-    m.to_cols_array().iter().map(|v| v * v).sum()
-}
-
-/// Proposes the longest step that one frozen geometry can serve.
+/// Proposes the longest substep that the stiffest wave on the film allows.
 pub fn limit_step_by_tension(
     carriers: Query<(&SurfaceTension, &Thickness), With<EulerianParticle>>,
     lamellae: Res<Lamellae>,
     liquid: Res<Liquid>,
+    melp: Res<Melp>,
     mut limits: ResMut<StepLimits>,
 ) {
     let (tension, thickness) = columns(&carriers);
     let inertia = Inertia { density: liquid.density, lamellae: &lamellae }.per_area(thickness);
     let squared_speed = ordered_max(inertia.len(), 0.0, |i| 2.0 * tension[i].0 / inertia[i]);
     let substep = SUBSTEP * lamellae.spacing / squared_speed.sqrt();
-    limits.propose("tension", SUBSTEPS_PER_GEOMETRY * substep);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Growth per step of a mode whose frequency times the longest substep is `turn`, and whose response to the next
-    /// geometry is stiffer than the frozen one by a relative `error`: spectral radius of the step's linear map, less 1.
-    fn growth(turn: f64, error: f64) -> f64 {
-        let step = |place: f64, speed: f64| {
-            let (mut speed, mut shift) = (speed, 0.0);
-            for _ in 0..SUBSTEPS_PER_GEOMETRY as u32 {
-                speed -= turn * turn * ((1.0 + error) * place + STIFFENING * shift);
-                shift += speed;
-            }
-            (place + shift, speed)
-        };
-        let ((a, c), (b, d)) = (step(1.0, 0.0), step(0.0, 1.0));
-        let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
-        let root = half_trace * half_trace - determinant;
-        let radius = if root < 0.0 { determinant.sqrt() } else { half_trace.abs() + root.sqrt() };
-        radius - 1.0
-    }
-
-    #[test]
-    fn no_mode_grows_from_step_to_step() {
-        // The fastest mode has 1.67 c/dx on even carriers, 1.93 c/dx on noisy ones.
-        let fastest = 1.93 * SUBSTEP;
-        for error in [0.0, 0.1, 0.3] {
-            for k in 1..=200 {
-                let turn = fastest * f64::from(k) / 200.0;
-                assert!(growth(turn, error) < 1e-9, "{turn} {error}: {}", growth(turn, error));
-            }
-        }
-    }
+    limits.propose_for_substeps("tension", substep, melp.substeps);
 }

@@ -7,6 +7,7 @@ use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
 use froth_components::film::{Area, SurfaceTension, Surfactant, Thickness};
 use froth_components::gas::{GasPressure, GasVolume};
 use froth_components::kind::{EulerianParticle, LagrangianParticle, Region};
@@ -23,6 +24,7 @@ pub fn observe_films(
     liquid: Res<Liquid>,
     atmosphere: Res<Atmosphere>,
     motion: Res<NormalMotion>,
+    clock: Res<Clock>,
     mut observables: ResMut<Observables>,
 ) {
     let (positions, speeds, areas, tension, surfactant, thickness) = columns(&carriers);
@@ -42,7 +44,7 @@ pub fn observe_films(
         let strain = sum(&|i| areas[i].0 * (surfactant[i].0 / rest - 1.0).powi(2)) / sum(&|i| areas[i].0);
         observables.record("surfactant_deviation", "1", strain.sqrt());
     }
-    observables.record("normal_substeps", "1", f64::from(motion.substeps));
+    observables.record("substeps", "1", f64::from(clock.substeps));
     observables.record("momentum_correction", "m/s", motion.momentum_correction);
     let centre = ordered_sum(count, DVec3::ZERO, |i| positions[i].0 * areas[i].0) / sum(&|i| areas[i].0);
     observables.record("centre_x", "m", centre.x);

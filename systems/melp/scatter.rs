@@ -10,12 +10,13 @@
 
 use super::links::{Carriers, Link};
 use super::settings::Melp;
-use super::state::{FilmStencil, TangentialFlow, Transfers};
+use super::state::{TangentialFlow, Transfers};
 use super::tiles::{PIECE, Rows, Site, Tile};
 use crate::operators::tangent::{nearly_rotated, outer, plane_inverse, plane_outer, tangential};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
-use bevy_ecs::system::{Query, Res};
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::clock::Clock;
 use froth_components::film::{LiquidVolume, Surfactant, SurfactantAmount, Thickness};
 use froth_components::identity::InRegion;
 use froth_components::kind::{EulerianParticle, LagrangianParticle};
@@ -32,6 +33,8 @@ pub struct CarrierFlow<'a> {
     pub velocity: &'a [DVec3],
     /// Its change since it was gathered, m/s.
     pub change: &'a [DVec3],
+    /// Mean velocity over the step less that at its end, m/s; empty where they are the same.
+    pub drift: &'a [DVec3],
     /// Concentration, mol/m^2.
     pub concentration: &'a [f64],
 }
@@ -53,6 +56,8 @@ pub struct Received<'a> {
     pub gradients: &'a mut [VelocityGradient],
     /// Interpolated concentration, mol/m^2.
     pub concentration: &'a mut [f64],
+    /// Velocities to move by, m/s.
+    pub drift: &'a mut [DVec3],
 }
 
 /// Scatters to every material particle.
@@ -65,10 +70,10 @@ pub fn scatter_all(
     received: Received,
 ) {
     let kernel = carriers.kernel();
-    let Received { velocities, gradients, concentration } = received;
-    let outputs = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE));
-    let pieces = outputs.zip(concentration.par_chunks_mut(PIECE)).zip(links.par_chunks(PIECE)).enumerate();
-    pieces.for_each_init(Tile::default, |tile, (piece, (((velocities, gradients), concentration), links))| {
+    let Received { velocities, gradients, concentration, drift } = received;
+    let flows = velocities.par_chunks_mut(PIECE).zip(gradients.par_chunks_mut(PIECE)).zip(drift.par_chunks_mut(PIECE));
+    let pieces = flows.zip(concentration.par_chunks_mut(PIECE)).zip(links.par_chunks(PIECE)).enumerate();
+    pieces.for_each_init(Tile::default, |tile, (piece, ((((velocities, gradients), drift), concentration), links))| {
         let rows = rows.piece(piece);
         tile.for_each(carriers, rows, |tile, range| {
             for l in range {
@@ -78,6 +83,7 @@ pub fn scatter_all(
                 let flip = velocities[l].0 + taken.change;
                 velocities[l].0 = tangential(taken.velocity.lerp(flip, blend.flip), site.normal);
                 gradients[l].0 = taken.gradient;
+                drift[l] = velocities[l].0 + tangential(taken.drift, site.normal);
                 concentration[l] = taken.concentration;
             }
         });
@@ -88,6 +94,7 @@ pub fn scatter_all(
 struct Taken {
     velocity: DVec3,
     change: DVec3,
+    drift: DVec3,
     gradient: DMat3,
     concentration: f64,
 }
@@ -95,7 +102,7 @@ struct Taken {
 impl Taken {
     #[inline]
     fn at(tile: &Tile, site: &Site, link: Link, flow: CarrierFlow, blend: Blend) -> Self {
-        let (mut velocity, mut change, mut concentration) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        let (mut velocity, mut change, mut drift, mut concentration) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 0.0);
         let (mut affine, mut inertia) = ([DVec3::ZERO; 2], DMat2::ZERO);
         for hit in tile.hits() {
             let (e, normal) = tile.carrier(hit.slot);
@@ -106,12 +113,15 @@ impl Taken {
             if blend.flip > 0.0 {
                 change += nearly_rotated(flow.change[e], normal, site.normal) * weight;
             }
+            if let Some(apart) = flow.drift.get(e) {
+                drift += nearly_rotated(*apart, normal, site.normal) * weight;
+            }
             affine[0] += there * hit.along.x;
             affine[1] += there * hit.along.y;
             inertia += plane_outer(weight, hit.along);
         }
         let gradient = if blend.affine && !link.is_one_sided { gradient(affine, inertia, site) } else { DMat3::ZERO };
-        Self { velocity, change, gradient, concentration }
+        Self { velocity, change, drift, gradient, concentration }
     }
 }
 
@@ -143,7 +153,7 @@ pub fn interpolate(carriers: Carriers, rows: Rows, links: &[Link], value: impl F
 
 /// Scatters the flow to the material particles and sets the thickness they show.
 pub fn scatter_flow(
-    carriers: Query<(&Position, &Normal, &InRegion, &Surfactant, &Thickness), With<EulerianParticle>>,
+    carriers: Query<(&InRegion, &Surfactant, &Thickness), With<EulerianParticle>>,
     mut material: Query<
         (
             &Position,
@@ -158,18 +168,21 @@ pub fn scatter_flow(
         (With<LagrangianParticle>, Without<EulerianParticle>),
     >,
     lamellae: Res<Lamellae>,
-    stencil: Res<FilmStencil>,
-    transfers: Res<Transfers>,
+    clock: Res<Clock>,
+    mut transfers: ResMut<Transfers>,
     flow: Res<TangentialFlow>,
     liquid: Res<Liquid>,
     melp: Res<Melp>,
 ) {
-    let (positions, normals, regions, surfactant, eulerian_thickness) = columns(&carriers);
-    let carriers = Carriers { positions, normals, regions, stencil: &stencil.0, spacing: lamellae.spacing };
+    let (regions, surfactant, eulerian_thickness) = columns(&carriers);
+    let Transfers { links, positions, normals, cells, drift, .. } = &mut *transfers;
+    let carriers = Carriers { positions, normals, regions, cells, spacing: lamellae.spacing };
     let (positions, normals, regions, volumes, amounts, mut velocities, mut gradients, mut thickness) =
         columns_mut(&mut material);
     let rows = Rows { positions, normals, regions };
-    let change: Vec<DVec3> = flow.solved.iter().zip(&flow.gathered).map(|(new, old)| *new - *old).collect();
+    let change: Vec<DVec3> = flow.last.iter().zip(&flow.gathered).map(|(new, old)| *new - *old).collect();
+    let mean = |path: &DVec3| *path / clock.step_length;
+    let apart: Vec<DVec3> = flow.path.iter().zip(&flow.last).map(|(path, last)| mean(path) - *last).collect();
     let elastic = liquid.elasticity > 0.0;
     // What is shown follows the concentration; without surfactant there is only the carriers' thickness.
     let shown: Vec<f64> = if elastic {
@@ -177,15 +190,18 @@ pub fn scatter_flow(
     } else {
         eulerian_thickness.iter().map(|eta| eta.0).collect()
     };
-    let carrier_flow = CarrierFlow { velocity: &flow.solved, change: &change, concentration: &shown };
+    let apart = if clock.substeps > 1 { &apart[..] } else { &[] };
+    let carrier_flow = CarrierFlow { velocity: &flow.last, change: &change, drift: apart, concentration: &shown };
     let blend = Blend { affine: melp.affine, flip: melp.flip };
-    let mut taken = vec![0.0; positions.len()];
+    let mut taken = vec![0.0; volumes.len()];
+    drift.resize(volumes.len(), DVec3::ZERO);
     let received = Received {
         velocities: velocities.bypass_change_detection(),
         gradients: gradients.bypass_change_detection(),
         concentration: &mut taken,
+        drift,
     };
-    scatter_all(carriers, carrier_flow, rows, &transfers.links, blend, received);
+    scatter_all(carriers, carrier_flow, rows, links, blend, received);
     thickness.bypass_change_detection().par_iter_mut().enumerate().with_min_len(4096).for_each(|(l, eta)| {
         eta.0 = if elastic { volumes[l].0 * taken[l] / amounts[l].0 } else { taken[l] };
     });

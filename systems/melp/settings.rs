@@ -19,8 +19,8 @@ pub struct Melp {
     pub flip: f64,
     /// Smoothing of tangential velocity between neighbouring carriers per step (XSPH), 0 to 1.
     pub xsph: f64,
-    /// Whether the Eulerian loop is subcycled with explicit elasticity, as the bare film mass demands.
-    pub subcycled: bool,
+    /// Most substeps of the film's own motion in one step of the liquid.
+    pub substeps: u32,
     /// When the Marangoni solve may stop.
     pub marangoni: StopRule,
     /// When the redistribution's Poisson solve may stop.
@@ -38,7 +38,8 @@ impl Melp {
             affine: authored.transfer == Transfer::Affine,
             flip: authored.flip.si(),
             xsph: authored.xsph.si(),
-            subcycled: false,
+            // Without liquid there is nothing that could move less often.
+            substeps: if authored.liquid_per_carrier == 0 { 1 } else { authored.substeps },
             marangoni: StopRule { tolerance: 1e-6, max_iterations: 4000 },
             redistribution: StopRule { tolerance: 1e-3, max_iterations: 4000 },
             sort_interval: 8,

@@ -153,7 +153,7 @@ impl Tile {
         let turned = rows.normals.iter().map(|n| n.0.distance_squared(normal)).fold(0.0, f64::max).sqrt();
         self.clear();
         self.origin = low;
-        carriers.stencil.cells.for_each_in_box(low - reach, high + reach, |row| {
+        carriers.cells.for_each_in_box(low - reach, high + reach, |row| {
             let place = carriers.positions[row].0;
             let outside = (low - place).max(place - high).max(DVec3::ZERO);
             let agreement = carriers.normals[row].0.dot(normal);

@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use bevy_ecs::resource::Resource;
-use bevy_ecs::schedule::{IntoScheduleConfigs, Schedule, SystemSet};
+use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
 use bevy_ecs::system::ResMut;
 use bevy_ecs::world::World;
 
-use crate::stage::Stage;
+use crate::plan::SchedulePlan;
+use crate::stage::{Part, Stage};
 
 /// Wall time of each stage, of the last step and of all steps. Not part of the state of a run.
 #[derive(Resource, Clone, Debug, Default)]
@@ -18,38 +19,42 @@ pub struct StageTimes {
     steps: u64,
 }
 
-/// The border before a stage; that before `Stage::ALL.len()` ends the step.
+/// The border after a stage; `None` begins a part of the step.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Border(usize);
+struct Border(Option<Stage>);
 
 impl StageTimes {
-    /// Adds the resource, and the markers to a [staged](crate::stage::staged_schedule) schedule.
+    /// Adds the resource, and the markers to the schedules of a plan.
     ///
     /// Each marker is ordered against the stages on both sides, hence against every system of a stage.
-    pub fn install(world: &mut World, schedule: &mut Schedule) {
+    pub fn install(world: &mut World, plan: &mut SchedulePlan) {
         world.init_resource::<Self>();
-        for border in 0..=Stage::ALL.len() {
-            let mark = move |mut times: ResMut<Self>| times.cross(border);
-            let mut marker = mark.in_set(Border(border));
-            if let Some(before) = border.checked_sub(1) {
-                marker = marker.after(Stage::ALL[before]).after(Border(before));
+        for (part, schedule) in plan.schedules_mut() {
+            let begin = move |mut times: ResMut<Self>| times.begin(part);
+            let mut before = Border(None);
+            schedule.add_systems(begin.in_set(before));
+            for stage in part.stages() {
+                schedule.configure_sets((before, stage, Border(Some(stage))).chain());
+                let close = move |mut times: ResMut<Self>| times.close(stage);
+                before = Border(Some(stage));
+                schedule.add_systems(close.in_set(before));
             }
-            if let Some(&after) = Stage::ALL.get(border) {
-                marker = marker.before(after);
-            }
-            schedule.add_systems(marker);
         }
     }
 
-    /// Closes the stage before the border.
-    fn cross(&mut self, border: usize) {
+    fn begin(&mut self, part: Part) {
+        if part == Part::Begin {
+            self.steps += 1;
+            self.last = Default::default();
+        }
+        self.border = Some(Instant::now());
+    }
+
+    fn close(&mut self, stage: Stage) {
         let now = Instant::now();
-        match (border.checked_sub(1), self.border) {
-            (Some(stage), Some(since)) => {
-                self.last[stage] = now - since;
-                self.total[stage] += now - since;
-            }
-            _ => self.steps += 1,
+        if let Some(since) = self.border {
+            self.last[stage as usize] += now - since;
+            self.total[stage as usize] += now - since;
         }
         self.border = Some(now);
     }
@@ -74,7 +79,7 @@ impl StageTimes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Requires, SchedulePlan};
+    use crate::plan::Requires;
     use std::thread::sleep;
 
     #[test]
@@ -84,7 +89,7 @@ mod tests {
         // An exclusive system conflicts with every marker unless the two are ordered.
         let dawdle = |_: &mut World| sleep(Duration::from_millis(20));
         plan.add(Stage::Dynamics, "dawdle", dawdle, Requires::nothing());
-        StageTimes::install(&mut world, plan.schedule_mut());
+        StageTimes::install(&mut world, &mut plan);
         plan.run(&mut world);
         plan.run(&mut world);
         let times = world.resource::<StageTimes>();

@@ -15,6 +15,7 @@ use froth::gallery::GALLERY;
 use froth::method::METHODS;
 use froth::run::{Manifest, RunState};
 use froth::verify::LAWS;
+use froth_systems::stage::Stage;
 use serde_json::Value;
 
 /// A folder with the small scene.
@@ -137,7 +138,7 @@ fn explain_says_what_runs_and_why() {
     assert!(line("wind").ends_with("rests  needs: a wind"), "{text}");
     assert!(line("choose the step length").ends_with("runs   in every step"), "{text}");
     let stages = text.lines().filter(|line| !line.starts_with(' ')).count();
-    assert_eq!(stages, 1 + 12);
+    assert_eq!(stages, 1 + Stage::ALL.len());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use froth_systems::plan::ExplainedSystem;
-use froth_systems::stage::Stage;
+use froth_systems::stage::{Part, Stage};
 
 use super::report::Failure;
 use super::{DONE, say, scene_choice};
@@ -54,7 +54,8 @@ fn schedule(systems: &[ExplainedSystem]) -> String {
     let width = systems.iter().map(|system| system.name.chars().count()).max().unwrap_or(0);
     let mut lines = Vec::new();
     for stage in Stage::ALL {
-        lines.push(format!("{stage:?}"));
+        let often = if stage.part() == Part::Substep { " (once per substep)" } else { "" };
+        lines.push(format!("{stage:?}{often}"));
         let of_stage = systems.iter().filter(|system| system.stage == stage);
         let before = lines.len();
         lines.extend(of_stage.map(|system| line(system, width)));

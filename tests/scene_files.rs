@@ -272,3 +272,13 @@ proptest! {
         go_through(&EVERYTHING.as_bytes()[..length]);
     }
 }
+
+#[test]
+fn the_scenes_of_the_readme_can_be_simulated() {
+    let readme = include_str!("../README.md");
+    let scenes: Vec<&str> = readme.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!scenes.is_empty());
+    for text in scenes {
+        read(text).check(MEMORY).unwrap();
+    }
+}

@@ -6,6 +6,7 @@ use crate::identity::RegionId;
 use bevy_ecs::resource::Resource;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// All films, in the order of their region numbers, and the spacing they are sampled with.
@@ -57,6 +58,15 @@ pub enum Rim {
         /// Half the width and half the height, m.
         half: [f64; 2],
     },
+    /// A regular hexagon around a flat film.
+    Hexagon {
+        /// Centre, m.
+        centre: DVec3,
+        /// Unit vectors in its plane, at right angles; the first points to a corner.
+        sides: [DVec3; 2],
+        /// Distance from the centre to a corner, m.
+        radius: f64,
+    },
     /// A plane on which a dome stands; the film is on the side of `up`.
     Ground {
         /// A point of the plane, m.
@@ -106,6 +116,15 @@ impl Rim {
                 let side = usize::from(out[1] > out[0]);
                 (out[side], -sides[side] * along[side].signum())
             }
+            Self::Hexagon { centre, sides, radius } => {
+                let arm = place - centre;
+                let side = |k: u32| {
+                    let (sin, cos) = (TAU / 12.0 * f64::from(2 * k + 1)).sin_cos();
+                    sides[0] * cos + sides[1] * sin
+                };
+                let outward = (0..6).map(side).max_by(|a, b| a.dot(arm).total_cmp(&b.dot(arm))).unwrap_or(DVec3::ZERO);
+                (outward.dot(arm) - radius * (TAU / 12.0).cos(), -outward)
+            }
             Self::Ground { point, up } => (-up.dot(place - point), up),
         }
     }
@@ -113,7 +132,7 @@ impl Rim {
     /// `place` moved back inside by the shortest way if it lies beyond the rim.
     #[must_use]
     pub fn confine(&self, place: DVec3) -> DVec3 {
-        // A corner of a rectangle takes two moves.
+        // A corner takes two moves.
         let once = |p: DVec3| match self.beyond(p) {
             (out, inward) if out > 0.0 => p + inward * out,
             _ => p,
@@ -131,6 +150,16 @@ mod tests {
         let rim = Rim::Rectangle { centre: DVec3::ZERO, sides: [DVec3::X, DVec3::Y], half: [2.0, 1.0] };
         assert_eq!(rim.confine(DVec3::new(2.5, -1.5, 0.3)), DVec3::new(2.0, -1.0, 0.3));
         assert_eq!(rim.confine(DVec3::new(1.5, -0.5, 0.0)), DVec3::new(1.5, -0.5, 0.0));
+    }
+
+    #[test]
+    fn a_hexagon_ends_at_its_sides_and_corners() {
+        let rim = Rim::Hexagon { centre: DVec3::X, sides: [DVec3::X, DVec3::Y], radius: 2.0 };
+        let apothem = 3.0_f64.sqrt();
+        let (out, inward) = rim.beyond(DVec3::new(1.0, 2.0, 0.1));
+        assert!((out - (2.0 - apothem)).abs() < 1e-12 && inward.distance(-DVec3::Y) < 1e-12);
+        let corner = rim.confine(DVec3::new(3.5, 0.1, 0.0));
+        assert!(rim.beyond(corner).0 < 1e-12 && corner.distance(DVec3::new(3.0, 0.0, 0.0)) < 0.2, "{corner}");
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Shapes a film starts from: closed ([`Sphere`], [`Ellipsoid`]) or pinned at a rim ([`HalfSphere`], [`Disc`], [`Rectangle`]).
+//! Shapes a film starts from: closed ([`Sphere`], [`Ellipsoid`]) or pinned at a rim ([`HalfSphere`], [`Disc`],
+//! [`Rectangle`], [`Hexagon`]).
 //!
 //! Each knows its area and the length of its rim, from which the number of particles is estimated before any is made.
 
@@ -131,14 +132,51 @@ impl<'de> Deserialize<'de> for Rectangle {
             up: Option<Direction>,
         }
         let Fields { centre, width, height, normal, up } = Fields::deserialize(deserializer)?;
-        let up = match up {
-            Some(up) => within_plane(up, normal).ok_or_else(|| {
-                let help = "write an up that lies more or less in the plane of the rectangle";
-                Refusal::new(RefusalKind::Contradiction, "`up` points along the normal", help).into_serde()
-            })?,
-            None => within_plane(Direction::Y, normal).unwrap_or(Direction::MINUS_Z),
-        };
-        Ok(Self { centre, width, height, normal, up })
+        Ok(Self { centre, width, height, normal, up: upright(up, normal)? })
+    }
+}
+
+/// A flat regular hexagon whose rim is pinned.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct Hexagon {
+    /// Centre, metres. Default: the origin.
+    pub centre: Place,
+    /// Distance from the centre to a corner, which is the length of a side, metres.
+    pub radius: Length,
+    /// Normal of the plane. Default: z.
+    pub normal: Direction,
+    /// Direction of a corner, at right angles to the normal: what is written, less its part along the normal.
+    /// Default: y, or -z where the normal is along y.
+    pub up: Direction,
+}
+
+impl<'de> Deserialize<'de> for Hexagon {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename = "Hexagon", deny_unknown_fields)]
+        struct Fields {
+            #[serde(default)]
+            centre: Place,
+            #[serde(deserialize_with = "range::film_size")]
+            radius: Length,
+            #[serde(default = "along_z")]
+            normal: Direction,
+            #[serde(default)]
+            up: Option<Direction>,
+        }
+        let Fields { centre, radius, normal, up } = Fields::deserialize(deserializer)?;
+        Ok(Self { centre, radius, normal, up: upright(up, normal)? })
+    }
+}
+
+/// The authored `up` of a flat shape within its plane, or a default one.
+fn upright<E: serde::de::Error>(up: Option<Direction>, normal: Direction) -> Result<Direction, E> {
+    match up {
+        Some(up) => within_plane(up, normal).ok_or_else(|| {
+            let help = "write an up that lies more or less in the plane of the film";
+            Refusal::new(RefusalKind::Contradiction, "`up` points along the normal", help).into_serde()
+        }),
+        None => Ok(within_plane(Direction::Y, normal).unwrap_or(Direction::MINUS_Z)),
     }
 }
 
@@ -170,11 +208,13 @@ pub enum Shape {
     Disc(Disc),
     /// A rectangle with a pinned rim.
     Rectangle(Rectangle),
+    /// A regular hexagon with a pinned rim.
+    Hexagon(Hexagon),
 }
 
 impl Shape {
     /// Names of the shape components, as scene files write them.
-    pub const NAMES: [&str; 5] = ["Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle"];
+    pub const NAMES: [&str; 6] = ["Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle", "Hexagon"];
 
     /// Centre, metres.
     #[must_use]
@@ -185,6 +225,7 @@ impl Shape {
             Self::HalfSphere(half) => half.centre.si(),
             Self::Disc(disc) => disc.centre.si(),
             Self::Rectangle(rectangle) => rectangle.centre.si(),
+            Self::Hexagon(hexagon) => hexagon.centre.si(),
         }
     }
 
@@ -198,6 +239,7 @@ impl Shape {
             Self::HalfSphere(half) => half.radius.si(),
             Self::Disc(disc) => disc.radius.si(),
             Self::Rectangle(rectangle) => 0.5 * rectangle.width.si().max(rectangle.height.si()),
+            Self::Hexagon(hexagon) => hexagon.radius.si(),
         }
     }
 
@@ -210,6 +252,7 @@ impl Shape {
             Self::HalfSphere(half) => TAU * half.radius.si().powi(2),
             Self::Disc(disc) => PI * disc.radius.si().powi(2),
             Self::Rectangle(rectangle) => rectangle.width.si() * rectangle.height.si(),
+            Self::Hexagon(hexagon) => 1.5 * 3.0_f64.sqrt() * hexagon.radius.si().powi(2),
         }
     }
 
@@ -221,6 +264,7 @@ impl Shape {
             Self::HalfSphere(half) => TAU * half.radius.si(),
             Self::Disc(disc) => TAU * disc.radius.si(),
             Self::Rectangle(rectangle) => 2.0 * (rectangle.width.si() + rectangle.height.si()),
+            Self::Hexagon(hexagon) => 6.0 * hexagon.radius.si(),
         }
     }
 

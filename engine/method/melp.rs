@@ -7,7 +7,7 @@ use froth_components::authored::film::Film;
 use froth_components::authored::method::{AirInertia, Gas, MelpSettings, MethodChoice};
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::perturbation::{Bumps, HarmonicMode};
-use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Rectangle, Shape, Sphere};
+use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Shape, Sphere};
 use froth_components::clock::Seed;
 use froth_components::column::Column;
 use froth_components::film::{
@@ -173,22 +173,22 @@ fn authored_films(world: &mut World) -> Vec<AuthoredFilm> {
     let mut films = world.query::<(
         &PlaceInScene,
         &Film,
-        (Option<&Sphere>, Option<&Ellipsoid>, Option<&HalfSphere>, Option<&Disc>, Option<&Rectangle>),
+        (Option<&Sphere>, Option<&Ellipsoid>, Option<&HalfSphere>),
+        (Option<&Disc>, Option<&Rectangle>, Option<&Hexagon>),
         (Option<&Bumps>, Option<&HarmonicMode>),
         (Option<&Drift>, Option<&Spin>, Option<&Swirl>),
     )>();
     let mut found: Vec<(u32, AuthoredFilm)> = films
         .iter(world)
-        .filter_map(|(place, film, (sphere, ellipsoid, half, disc, rectangle), (bumps, mode), (drift, spin, swirl))| {
-            let shape = sphere
-                .map(|s| Shape::Sphere(*s))
-                .or(ellipsoid.map(|s| Shape::Ellipsoid(*s)))
-                .or(half.map(|s| Shape::HalfSphere(*s)))
-                .or(disc.map(|s| Shape::Disc(*s)))
-                .or(rectangle.map(|s| Shape::Rectangle(*s)))?;
+        .filter_map(|(place, film, (sphere, ellipsoid, half), (disc, rectangle, hexagon), (bumps, mode), motion)| {
+            let curved = sphere.map(|s| Shape::Sphere(*s)).or(ellipsoid.map(|s| Shape::Ellipsoid(*s)));
+            let curved = curved.or(half.map(|s| Shape::HalfSphere(*s)));
+            let flat = disc.map(|s| Shape::Disc(*s)).or(rectangle.map(|s| Shape::Rectangle(*s)));
+            let shape = curved.or(flat).or(hexagon.map(|s| Shape::Hexagon(*s)))?;
             let own_seed = random::bits(seed, u64::from(place.0), 0, Use::NoiseSeed) as u32;
             let bumps = bumps.map(|b| (*b, b.seed.map_or(own_seed.wrapping_add(1), |s| s as u32)));
             let perturbation = Perturbation { bumps, mode: mode.copied() };
+            let (drift, spin, swirl): (Option<&Drift>, Option<&Spin>, Option<&Swirl>) = motion;
             let (drift, spin, swirl) = (drift.copied(), spin.copied(), swirl.copied());
             Some((place.0, AuthoredFilm { shape, film: *film, perturbation, seed: own_seed, drift, spin, swirl }))
         })

@@ -5,7 +5,7 @@ use froth_components::authored::field::{AirDrag, Gravity, HeatSource, Hover, Swe
 use froth_components::authored::film::Film;
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::perturbation::{Bumps, HarmonicMode};
-use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Rectangle, Sphere};
+use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Sphere};
 
 use super::registry::AuthoredRegistry;
 
@@ -17,6 +17,7 @@ pub(super) fn register(registry: &mut AuthoredRegistry) {
     registry.register::<HalfSphere>("HalfSphere", "shape: half a sphere, its rim pinned to a plane");
     registry.register::<Disc>("Disc", "shape: a flat disc, its rim pinned");
     registry.register::<Rectangle>("Rectangle", "shape: a flat rectangle, its rim pinned");
+    registry.register::<Hexagon>("Hexagon", "shape: a flat regular hexagon, its rim pinned");
 
     registry.register::<Film>("Film", "makes a shape a soap film: thickness, surfactant, warmth");
     registry.register::<Bumps>("Bumps", "displaces a film by noise along its normal");

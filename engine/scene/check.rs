@@ -23,6 +23,7 @@ const COMPANIONS: &[(&str, &[&str])] = &[
     ("HalfSphere", &["Film"]),
     ("Disc", &["Film"]),
     ("Rectangle", &["Film"]),
+    ("Hexagon", &["Film"]),
     ("Bumps", &Shape::NAMES),
     ("HarmonicMode", &ROUND),
     ("Drift", &["Film"]),

@@ -6,7 +6,7 @@ use froth_components::authored::method::MethodName;
 
 /// What a method without inertia can start from.
 const STATICS: &[&str] =
-    &["Name", "Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle", "Film", "Bumps", "HarmonicMode"];
+    &["Name", "Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle", "Hexagon", "Film", "Bumps", "HarmonicMode"];
 
 /// Components a method honours; `None` for all of them.
 fn honoured_by(method: MethodName) -> Option<&'static [&'static str]> {

@@ -39,7 +39,7 @@ use std::path::Path;
 
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Rectangle, Shape, Sphere};
+use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Shape, Sphere};
 use froth_components::authored::{Name, PlaceInScene};
 
 pub use check::LEAST_PARTICLES;
@@ -156,6 +156,7 @@ impl AuthoredEntity {
             .or_else(|| self.get::<HalfSphere>().copied().map(Shape::HalfSphere))
             .or_else(|| self.get::<Disc>().copied().map(Shape::Disc))
             .or_else(|| self.get::<Rectangle>().copied().map(Shape::Rectangle))
+            .or_else(|| self.get::<Hexagon>().copied().map(Shape::Hexagon))
     }
 
     fn spawn(&self, place: PlaceInScene, world: &mut World) -> Entity {

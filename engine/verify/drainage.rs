@@ -6,9 +6,6 @@
 //!
 //! Shown is `V Gamma/S`, with the concentration that the Marangoni solve gives. The liquid per area as gathered from the
 //! material particles is the same up to their sampling noise, which refinement does not remove.
-//!
-//! # Limits
-//! The paper's second film is a hexagon; here it is a disc, the round shape there is.
 
 use froth_components::film::{Area, LiquidVolume, Thickness};
 use froth_components::kind::{EulerianParticle, LagrangianParticle};
@@ -42,9 +39,11 @@ struct Profile {
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
     let counts: &[u32] = effort.choose(&[200, 400, 800], &[1250, 2500, 5000]);
     let film = SceneRun::of("drainage").with("rate: \"4 1/s\"", DRAG);
-    let disc = film.clone().with("Rectangle(width: \"6 cm\", height: \"9 cm\")", "Disc(radius: \"4.5 cm\")");
+    let rectangle = "Rectangle(width: \"6 cm\", height: \"9 cm\")";
+    let disc = film.clone().with(rectangle, "Disc(radius: \"4.5 cm\")");
+    let hexagon = film.clone().with(rectangle, "Hexagon(radius: \"4.5 cm\")");
     let mut findings = Vec::new();
-    for (name, scene) in [("rectangle", film), ("disc", disc)] {
+    for (name, scene) in [("rectangle", film), ("disc", disc), ("hexagon", hexagon)] {
         let at = |count: &u32| drained(&scene.clone().with("Particles(2500)", &format!("Particles({count})")));
         let profiles = counts.iter().map(at).collect::<Result<Vec<_>, LawError>>()?;
         findings.extend(film_findings(name, counts, &profiles));

@@ -1,7 +1,8 @@
-//! Even point sets: golden spirals on round shapes, a low-discrepancy sequence and a lattice on rectangles.
+//! Even point sets: golden spirals on round shapes, a low-discrepancy sequence and lattices on straight-edged ones.
 
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 /// The golden angle, `pi (3 - sqrt 5)`.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
@@ -40,6 +41,30 @@ pub fn lattice(half_width: f64, half_height: f64, spacing: f64) -> Vec<(f64, f64
         points.extend((0..across as u32).map(|k| (-half_width + step * (f64::from(k) + shift), y)));
     }
     points
+}
+
+/// Rings of a triangular lattice of `step` around a point of it, as (x, y). Ring `k` is a hexagon of `6 k` points with a
+/// corner at `(k step, 0)`; ring 0 is the point itself.
+pub fn hexagons(step: f64, rings: Range<u32>) -> impl Iterator<Item = (f64, f64)> {
+    let side = |ring: u32, k: u32| {
+        let direction = |sixth: u32| (TAU / 6.0 * f64::from(sixth)).sin_cos();
+        let ((corner_y, corner_x), (along_y, along_x)) = (direction(k), direction(k + 2));
+        let places = 0..if ring == 0 { u32::from(k == 0) } else { ring };
+        places.map(move |j| {
+            let (from, along) = (f64::from(ring), f64::from(j));
+            (corner_x * from + along_x * along, corner_y * from + along_y * along)
+        })
+    };
+    rings.flat_map(move |ring| (0..6).flat_map(move |k| side(ring, k))).map(move |(x, y)| (x * step, y * step))
+}
+
+/// How many rings of [`hexagons`], the centre included, fit a hexagon of `radius` (centre to corner) at about `spacing`
+/// (square root of the area per point), and their step: the outermost is half a step inside.
+#[must_use]
+pub fn fitting_hexagons(radius: f64, spacing: f64) -> (u32, f64) {
+    let step = spacing * (4.0_f64 / 3.0).sqrt().sqrt();
+    let rings = (radius / step + 0.5).round().max(1.0);
+    (rings as u32, radius / (rings - 0.5))
 }
 
 /// The first `count` points of a two-dimensional low-discrepancy sequence on the rectangle, as (x, y).
@@ -110,6 +135,17 @@ mod tests {
         let points = lattice(0.08, 0.045, 0.002);
         assert!((points.len() as f64 / (0.16 * 0.09 / 4e-6) - 1.0).abs() < 0.02, "{}", points.len());
         assert!(points.iter().all(|(x, y)| x.abs() < 0.08 && y.abs() < 0.045));
+    }
+
+    #[test]
+    fn hexagons_are_a_lattice_of_even_neighbours() {
+        let (rings, step) = fitting_hexagons(0.05, 0.002);
+        let points: Vec<DVec3> = hexagons(step, 0..rings).map(|(x, y)| DVec3::new(x, y, 0.0)).collect();
+        assert_eq!(points.len() as u32, 1 + 3 * rings * (rings - 1));
+        let area = 1.5 * 3.0_f64.sqrt() * 0.05 * 0.05;
+        assert!(((area / points.len() as f64).sqrt() / 0.002 - 1.0).abs() < 0.02, "{}", points.len());
+        let nearest = |p: &DVec3| points.iter().map(|q| p.distance(*q)).filter(|d| *d > 0.0).fold(1.0, f64::min);
+        assert!(points.iter().all(|p| (nearest(p) / step - 1.0).abs() < 1e-9));
     }
 
     #[test]

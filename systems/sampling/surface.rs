@@ -3,7 +3,7 @@
 use super::harmonic::Harmonic;
 use super::spread;
 use froth_components::authored::perturbation::{Bumps, HarmonicMode};
-use froth_components::authored::shape::Shape;
+use froth_components::authored::shape::{Hexagon, Shape};
 use froth_components::lamella::Rim;
 use glam::DVec3;
 use noise::{NoiseFn, Perlin};
@@ -116,6 +116,20 @@ impl Surface {
                     spread::scattered(count, half[0], half[1]).map(place).collect()
                 }
             }
+            Shape::Hexagon(hexagon) => {
+                let (normal, radius) = (hexagon.normal.unit(), hexagon.radius.si());
+                let rim = hexagon_rim(&hexagon);
+                let point = |position: DVec3| FilmPoint { position, normal };
+                if lattice {
+                    let (rings, step) = spread::fitting_hexagons(radius, (self.shape.area() / count as f64).sqrt());
+                    spread::hexagons(step, 0..rings).map(|p| point(on_hexagon(&hexagon, p))).collect()
+                } else {
+                    // The sequence fills the box around the hexagon, a third larger than the hexagon itself.
+                    let box_count = count * 4 / 3;
+                    let places = spread::scattered(box_count, radius, 0.75_f64.sqrt() * radius);
+                    places.map(|p| on_hexagon(&hexagon, p)).filter(|p| rim.beyond(*p).0 < 0.0).map(point).collect()
+                }
+            }
         }
     }
 
@@ -145,6 +159,7 @@ impl Surface {
                 Some(Rim::Circle { centre: disc.centre.si(), axis: disc.normal.unit(), radius: disc.radius.si() })
             }
             Shape::Rectangle(rectangle) => Some(rectangle_rim(&rectangle)),
+            Shape::Hexagon(hexagon) => Some(hexagon_rim(&hexagon)),
         }
     }
 
@@ -172,6 +187,10 @@ impl Surface {
                 let place = |(x, y): (f64, f64)| centre + sides[0] * x + sides[1] * y;
                 spread::frame(half[0], half[1], spacing, WALL_LAYERS).into_iter().map(place).collect()
             }
+            Shape::Hexagon(hexagon) => {
+                let (rings, step) = spread::fitting_hexagons(hexagon.radius.si(), spacing);
+                spread::hexagons(step, rings..rings + WALL_LAYERS).map(|p| on_hexagon(&hexagon, p)).collect()
+            }
         }
     }
 }
@@ -180,6 +199,18 @@ impl Surface {
 fn frame_of(axis: DVec3) -> [DVec3; 2] {
     let (a, b) = axis.any_orthonormal_pair();
     [a, b]
+}
+
+fn hexagon_rim(hexagon: &Hexagon) -> Rim {
+    let up = hexagon.up.unit();
+    let sides = [up, hexagon.normal.unit().cross(up)];
+    Rim::Hexagon { centre: hexagon.centre.si(), sides, radius: hexagon.radius.si() }
+}
+
+/// A point of a hexagon given along its corner and across.
+fn on_hexagon(hexagon: &Hexagon, (x, y): (f64, f64)) -> DVec3 {
+    let up = hexagon.up.unit();
+    hexagon.centre.si() + up * x + hexagon.normal.unit().cross(up) * y
 }
 
 fn rectangle_rim(rectangle: &froth_components::authored::shape::Rectangle) -> Rim {

@@ -58,8 +58,10 @@ pub struct Measurement {
     pub processor: Option<Duration>,
     /// Largest memory of the process so far, of this measurement where the system allows; `None` where it does not tell.
     pub peak_bytes: Option<u64>,
-    /// Iterations of every solver, by name of the observable.
-    pub iterations: Vec<(String, f64)>,
+    /// Simulated time, s.
+    pub simulated: f64,
+    /// Substeps and iterations of every solver, by name of the observable.
+    pub counts: Vec<(String, f64)>,
 }
 
 /// Measures the scene called `name` with `carriers` Eulerian particles.
@@ -75,17 +77,17 @@ pub fn measure(name: &str, text: &str, carriers: u64, settings: BenchSettings) -
         simulation.step()?;
     }
     let before: Vec<Duration> = simulation.stage_times().total().map(|(_, time)| time).collect();
-    let (began, processor) = (Instant::now(), process::processor_time());
-    let mut iterations: Vec<(String, f64)> = Vec::new();
+    let (began, processor, from) = (Instant::now(), process::processor_time(), simulation.time());
+    let mut counts: Vec<(String, f64)> = Vec::new();
     for _ in 0..settings.steps {
         simulation.step()?;
-        count_iterations(&simulation, &mut iterations);
+        add_counts(&simulation, &mut counts);
     }
     let per_step = |time: Duration| time.div_f64(settings.steps.max(1) as f64);
     let wall = per_step(began.elapsed());
     let spent = process::processor_time().zip(processor).map(|(after, before)| per_step(after - before));
     let stages = simulation.stage_times().total().zip(&before);
-    iterations.iter_mut().for_each(|(_, sum)| *sum /= settings.steps.max(1) as f64);
+    counts.iter_mut().for_each(|(_, sum)| *sum /= settings.steps.max(1) as f64);
     Ok(Measurement {
         stages: stages.map(|((stage, after), before)| (stage, per_step(after - *before))).collect(),
         rows: simulation.rows().into_iter().filter(|(_, count)| *count > 0).collect(),
@@ -95,7 +97,8 @@ pub fn measure(name: &str, text: &str, carriers: u64, settings: BenchSettings) -
         wall,
         processor: spent,
         peak_bytes: process::peak_bytes(),
-        iterations,
+        simulated: (simulation.time() - from) / settings.steps.max(1) as f64,
+        counts,
     })
 }
 
@@ -108,8 +111,9 @@ fn sized(name: &str, text: &str, carriers: u64) -> Result<Simulation, BuildError
     Simulation::builder().overrides(overrides).build_from_text(name, text)
 }
 
-fn count_iterations(simulation: &Simulation, sums: &mut Vec<(String, f64)>) {
-    for column in simulation.observables().columns().iter().filter(|column| column.name.ends_with("_iterations")) {
+fn add_counts(simulation: &Simulation, sums: &mut Vec<(String, f64)>) {
+    let counts = |name: &str| name == "substeps" || name.ends_with("_iterations");
+    for column in simulation.observables().columns().iter().filter(|column| counts(&column.name)) {
         let value = column.value.unwrap_or(0.0);
         match sums.iter_mut().find(|(name, _)| *name == column.name) {
             Some((_, sum)) => *sum += value,

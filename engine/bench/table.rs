@@ -21,8 +21,9 @@ pub fn describe(scene: &str, measured: &Measurement) -> String {
     if let Some(bytes) = measured.peak_bytes {
         lines.push(format!("  {:<12} {:>10.1} MB", "peak memory", 1e-6 * bytes as f64));
     }
+    lines.push(format!("  {:<12} {:>10.2} ms", "simulated", 1e3 * measured.simulated));
     lines.push(format!("  {:<12} {:>10.2} s", "start", measured.start.as_secs_f64()));
-    lines.extend(measured.iterations.iter().map(|(name, mean)| format!("  {name} {mean:.1}")));
+    lines.extend(measured.counts.iter().map(|(name, mean)| format!("  {name} {mean:.1}")));
     lines.join("\n")
 }
 
@@ -38,10 +39,11 @@ pub fn csv(scene: &str, measured: &Measurement) -> String {
     ];
     let whole = [
         ("whole step".to_owned(), milliseconds(measured.wall), "ms"),
+        ("simulated".to_owned(), 1e3 * measured.simulated, "ms"),
         ("start".to_owned(), measured.start.as_secs_f64(), "s"),
     ];
-    let iterations = measured.iterations.iter().map(|(name, mean)| (name.clone(), *mean, "1"));
-    let quantities = stages.chain(whole).chain(optional.into_iter().flatten()).chain(iterations);
+    let counts = measured.counts.iter().map(|(name, mean)| (name.clone(), *mean, "1"));
+    let quantities = stages.chain(whole).chain(optional.into_iter().flatten()).chain(counts);
     quantities.map(|(name, value, unit)| format!("{head},{name},{value:.6},{unit}\n")).collect()
 }
 

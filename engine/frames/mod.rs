@@ -203,8 +203,8 @@ mod tests {
                 let [left, right, bottom, top] = reach(&scene(shapes), aspect);
                 let widest = left.max(right).max(bottom).max(top);
                 assert!((0.6..0.95).contains(&widest), "{shapes:?} at {aspect}: {widest}");
-                // Centred: exactly where the film limits the distance, nearly so across.
-                assert!((left - right).abs() < 0.05 && (bottom - top).abs() < 0.05, "{shapes:?} at {aspect}");
+                let centred = (left - right).abs() < 1e-6 && (bottom - top).abs() < 1e-6;
+                assert!(centred, "{shapes:?} at {aspect}: {left} {right} {bottom} {top}");
             }
         }
     }

@@ -20,6 +20,8 @@ use serde::Deserialize;
 pub const FIELD_OF_VIEW: f64 = 35.0;
 /// How far above the horizon the default camera stands, degrees.
 pub const ELEVATION: f64 = 12.0;
+/// Halvings of the share of the picture that points fill: down to 1e-12.
+const HALVINGS: u32 = 40;
 /// Room around a framed sphere, relative to its radius.
 const MARGIN: f64 = 1.12;
 
@@ -87,11 +89,19 @@ impl Camera {
             let (over, under) = (highest(&|p| p.dot(axis) + k * p.z), highest(&|p| k * p.z - p.dot(axis)));
             (0.5 * (over - under), 0.5 * (over + under) / k)
         };
-        let ((x, distance_by_width), (y, distance_by_height)) =
-            (fit(DVec3::X, half_height * aspect), fit(DVec3::Y, half_height));
         let nearest = highest(&|p| p.z);
         let smallest = 1e-9 * first.length().max(1e-3);
-        let eye = DVec3::new(x, y, distance_by_width.max(distance_by_height).max(nearest + smallest));
+        let (by_width, by_height) = (fit(DVec3::X, half_height * aspect).1, fit(DVec3::Y, half_height).1);
+        let distance = by_width.max(by_height).max(nearest + smallest);
+        // The axis that does not limit: the smaller share that needs the same distance. The distance falls with the share.
+        let centred = |axis: DVec3, widest: f64| {
+            let (_, share) = (0..HALVINGS).fold((0.0, widest), |(low, high), _| {
+                let middle = 0.5 * (low + high);
+                if fit(axis, middle).1 > distance { (middle, high) } else { (low, middle) }
+            });
+            fit(axis, share).0
+        };
+        let eye = DVec3::new(centred(DVec3::X, half_height * aspect), centred(DVec3::Y, half_height), distance);
         let position = first + eye.x * axes.right + eye.y * axes.up + eye.z * axes.back;
         Ok(Self { position, target: position - (eye.z - nearest) * axes.back, ..unplaced })
     }

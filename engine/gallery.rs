@@ -22,7 +22,7 @@ pub const GALLERY: &[BuiltInScene] = &[
     },
     BuiltInScene {
         name: "deforming_rectangle",
-        summary: "a vertical film, thick above thin, turns over while a push sweeps across it",
+        summary: "a vertical film, thick above thin, turns over while a push of air sweeps across it",
         text: include_str!("../scenes/deforming_rectangle.ron"),
     },
     BuiltInScene {

@@ -108,7 +108,7 @@ faults! {
     an_infinite_radius: broken("\"10 cm\"", "inf");
     an_overflowing_radius: broken("10 cm", "1e400 cm");
     an_infinite_part_of_a_vector: broken("-9.81", "-1e999");
-    no_direction: broken("Gravity((0.0, -9.81, 0.0))", "Sweep(acceleration: 1, width: 1, speed: 1, direction: (0, 0, 0))");
+    no_direction: broken("Gravity((0.0, -9.81, 0.0))", "Sweep(pressure: 1, width: 1, speed: 1, direction: (0, 0, 0))");
     keyframes_out_of_order: broken("(0.0, -9.81, 0.0)", "[(t: 1, v: (0, 0, 0)), (t: \"0.5 s\", v: (0, -9.81, 0))]");
     an_order_above_the_degree: broken("Bumps(amplitude: 0.06)", "HarmonicMode(degree: 2, order: 3, amplitude: 0.1)");
     no_particles: broken("4000", "0");

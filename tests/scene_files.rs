@@ -42,7 +42,7 @@ Scene(
         [ Gravity([(t: 0, v: (0, 0, 0)), (t: "1 s", v: (0.0, "-9.81 m/s^2", 0.0))]) ],
         [ Wind(velocity: (1, 0, 0), drag: "2 1/s") ],
         [ HeatSource(position: (0, "-10 cm", 0), radius: "5 cm", warming: "100 ms", cooling: 0.6, expansion: 0.3) ],
-        [ Sweep(acceleration: [(t: 0, v: 0), (t: 1, v: 5)], width: "2 cm", speed: "0.1 m/s", start: "-10 cm") ],
+        [ Sweep(pressure: [(t: 0, v: 0), (t: 1, v: "1 Pa")], width: "2 cm", speed: "0.1 m/s", start: "-10 cm") ],
         [ AirDrag(rate: 0.5) ], [ Hover ],
     ],
 )

@@ -4,7 +4,7 @@ use bevy_ecs::component::Component;
 use serde::Deserialize;
 
 use super::shape::Place;
-use crate::quantity::{Acceleration, Direction, Keyframed, Length, Rate, Ratio, Speed, Time, Vector, dimension, range};
+use crate::quantity::{Direction, Keyframed, Length, Pressure, Rate, Ratio, Speed, Time, Vector, dimension, range};
 
 /// Gravity `g`, metres per second squared, the same everywhere; may be keyframed.
 #[derive(Component, Clone, Debug, PartialEq, Deserialize)]
@@ -60,16 +60,19 @@ fn usual_expansion() -> Ratio {
     Ratio::from_si(0.3)
 }
 
-/// A push out of the film that travels over it: `du/dt = A(t) exp(-(s/width)²) n`, `s = x · direction - start - speed * t`.
+/// A pulse of air pressure that travels over the film: `p(t) exp(-(s/width)²)`, `s = x · direction - start - speed * t`.
+///
+/// It pushes along the film's normal, as air does, whatever the film's thickness. At rest a long film of width `L` bows by
+/// about `p L² / (16 σ)` under an even pressure: at 25 mN/m and 9 cm, 2 cm per pascal.
 #[derive(Component, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// Strength `A` along the film's normal, metres per second squared; may be keyframed.
-    pub acceleration: Keyframed<Acceleration>,
-    /// Where the push travels. Default: x.
+    /// Pressure `p` at the middle of the pulse, pascals; positive pushes along the film's normal; may be keyframed.
+    pub pressure: Keyframed<Pressure>,
+    /// Where the pulse travels. Default: x.
     #[serde(default = "along_x")]
     pub direction: Direction,
-    /// Half width of the push along `direction`, metres.
+    /// Half width of the pulse along `direction`, metres.
     #[serde(deserialize_with = "range::positive")]
     pub width: Length,
     /// How fast it travels, metres per second.

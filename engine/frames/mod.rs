@@ -8,6 +8,7 @@ mod quantity;
 use std::io::Cursor;
 
 use bevy_ecs::world::World;
+use froth_components::authored::shape::Shape;
 use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle};
 use froth_components::lamella::Lamellae;
 use froth_components::motion::{Normal, Position};
@@ -20,6 +21,7 @@ use rayon::prelude::*;
 pub use quantity::QuantityError;
 
 use self::quantity::Quantity;
+use crate::picture::camera::ELEVATION;
 use crate::picture::{Animation, AnimationSettings, Camera, FilmPoints, Painter, Part, PictureError, PictureSettings};
 use crate::run::{FrameError, FrameSink, RunFolder};
 use crate::scene::{Scene, SceneError};
@@ -27,8 +29,14 @@ use crate::simulation::Simulation;
 
 /// File of the animated picture in a run folder.
 const ANIMATION: &str = "animation.png";
-/// Space left around the shapes, relative to their size: films wobble.
-const MARGIN: f64 = 1.12;
+/// Share of the picture that closed films fill: they wobble.
+const FILL: f64 = 0.783;
+/// Share that films fill if all are held by a rim.
+const FILL_OF_RIMS: f64 = 0.88;
+/// Least cosine between the view and the normal of a flat film.
+const FACING: f64 = 0.4;
+/// Where the camera may stand, elevation and azimuth in degrees: the first from which no flat film is seen edge-on.
+const STANDS: [(f64, f64); 4] = [(ELEVATION, 0.0), (40.0, 0.0), (ELEVATION, 50.0), (40.0, 50.0)];
 
 /// Why a scene's frames cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -104,19 +112,22 @@ impl Rows {
     }
 }
 
-/// The default camera: all shapes of the scene, with room to wobble.
+/// The default camera: the outline of all shapes of the scene, with room to wobble.
 fn framing(scene: &Scene, aspect: f64) -> Option<Camera> {
-    let shapes: Vec<_> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
-    let corners = shapes.iter().flat_map(|shape| {
-        let reach = DVec3::splat(shape.size());
-        [shape.centre() - reach, shape.centre() + reach]
-    });
-    let (low, high) = corners.fold(None, |found: Option<(DVec3, DVec3)>, p| {
-        Some(found.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
-    })?;
-    let centre = 0.5 * (low + high);
-    let radius = shapes.iter().map(|shape| shape.centre().distance(centre) + shape.size()).fold(0.0, f64::max);
-    Some(Camera::framing(centre, MARGIN * radius, aspect))
+    let shapes: Vec<Shape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
+    let outline: Vec<DVec3> = shapes.iter().flat_map(Shape::outline).collect();
+    let fill = if shapes.iter().any(Shape::is_closed) { FILL } else { FILL_OF_RIMS };
+    let normals: Vec<DVec3> = shapes.iter().filter_map(Shape::flat_normal).collect();
+    Camera::filling(&outline, stand(&normals), fill, aspect).ok()
+}
+
+/// Unit vector to the first stand that sees every flat film well, or else to the one that sees the worst film best.
+fn stand(normals: &[DVec3]) -> DVec3 {
+    let stands = STANDS.map(|(elevation, azimuth)| Camera::towards_eye(elevation, azimuth));
+    let facing = |eye: &DVec3| normals.iter().map(|normal| normal.dot(*eye).abs()).fold(1.0, f64::min);
+    let good = stands.iter().find(|eye| facing(eye) >= FACING);
+    let best = || stands.iter().max_by(|a, b| facing(a).total_cmp(&facing(b)));
+    *good.or_else(best).expect("invariant: there are stands")
 }
 
 impl FrameSink for PictureFrames {
@@ -141,5 +152,77 @@ impl FrameSink for PictureFrames {
         }
         folder.write(ANIMATION, animation.finish()?.get_ref())?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FACING, framing, stand};
+    use crate::scene::{AuthoredRegistry, Scene};
+    use froth_components::authored::shape::Shape;
+    use glam::DVec3;
+
+    fn scene(shapes: &[&str]) -> Scene {
+        let films: String = shapes.iter().map(|s| format!("[ {s}, Film(thickness: Uniform(\"400 nm\")) ],")).collect();
+        let text = format!(
+            "Scene(title: \"\", method: Melp(), resolution: Particles(1000), duration: 1, entities: [{films}])"
+        );
+        Scene::from_text("scene.ron", &text, &AuthoredRegistry::built_in()).unwrap()
+    }
+
+    /// Largest shares of the picture that the outline reaches to the left, right, bottom and top.
+    fn reach(scene: &Scene, aspect: f64) -> [f64; 4] {
+        let view = framing(scene, aspect).unwrap().view(aspect, 1.0).unwrap();
+        let shapes: Vec<Shape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
+        shapes.iter().flat_map(Shape::outline).fold([f64::MIN; 4], |[left, right, bottom, top], point| {
+            let placed = view.place(point);
+            assert!(placed.z < 0.0, "{point} is behind the camera");
+            let (x, y) = view.project(placed);
+            let (x, y) = (2.0 * x / aspect - 1.0, 1.0 - 2.0 * y);
+            [left.max(-x), right.max(x), bottom.max(-y), top.max(y)]
+        })
+    }
+
+    #[test]
+    fn the_outline_of_every_shape_lies_centred_inside_the_picture_and_fills_it() {
+        let scenes: [&[&str]; 8] = [
+            &["Sphere(radius: \"10 cm\")"],
+            &["Ellipsoid(centre: (1, 2, 3), radii: (\"5 cm\", \"10 cm\", \"30 cm\"))"],
+            &["HalfSphere(radius: \"5 cm\")"],
+            &["Disc(radius: \"5 cm\")"],
+            &["Disc(radius: \"5 cm\", normal: (0, 1, 0))"],
+            &["Rectangle(width: \"16 cm\", height: \"9 cm\")"],
+            &["Rectangle(width: \"6 cm\", height: \"9 cm\", normal: (1, 0, 0))"],
+            &[
+                "Sphere(centre: (\"-20 cm\", 0, 0), radius: \"5 cm\")",
+                "Disc(centre: (\"20 cm\", 0, 0), radius: \"3 cm\")",
+            ],
+        ];
+        for shapes in scenes {
+            for aspect in [0.5, 1.0, 16.0 / 9.0] {
+                let [left, right, bottom, top] = reach(&scene(shapes), aspect);
+                let widest = left.max(right).max(bottom).max(top);
+                assert!((0.6..0.95).contains(&widest), "{shapes:?} at {aspect}: {widest}");
+                let centred = (left - right).abs() < 1e-6 && (bottom - top).abs() < 1e-6;
+                assert!(centred, "{shapes:?} at {aspect}: {left} {right} {bottom} {top}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bubble_is_framed_like_a_sphere() {
+        use crate::picture::Camera;
+        let found = framing(&scene(&["Sphere(radius: \"10 cm\")"]), 1.0).unwrap();
+        // Room for the wobble on top of the room around any sphere, 1.12 each.
+        let sphere = Camera::framing(DVec3::ZERO, 1.12 * 0.1, 1.0);
+        assert!((found.position - sphere.position).length() < 0.005 * sphere.position.length());
+    }
+
+    #[test]
+    fn no_flat_film_is_seen_edge_on() {
+        for normal in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.0, 0.96, -0.28)] {
+            assert!(stand(&[normal]).dot(normal).abs() >= FACING, "{normal}");
+        }
+        assert_eq!(stand(&[DVec3::Z]), stand(&[]));
     }
 }

@@ -19,7 +19,9 @@ use serde::Deserialize;
 /// Default vertical field of view, degrees.
 pub const FIELD_OF_VIEW: f64 = 35.0;
 /// How far above the horizon the default camera stands, degrees.
-const ELEVATION: f64 = 12.0;
+pub const ELEVATION: f64 = 12.0;
+/// Halvings of the share of the picture that points fill: down to 1e-12.
+const HALVINGS: u32 = 40;
 /// Room around a framed sphere, relative to its radius.
 const MARGIN: f64 = 1.12;
 
@@ -48,6 +50,13 @@ fn default_field_of_view() -> f64 {
 }
 
 impl Camera {
+    /// Unit vector to an eye that stands `elevation` degrees above the horizon, `azimuth` degrees from z towards x.
+    #[must_use]
+    pub fn towards_eye(elevation: f64, azimuth: f64) -> DVec3 {
+        let ((rise, level), (aside, ahead)) = (elevation.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+        DVec3::new(level * aside, rise, level * ahead)
+    }
+
     /// Looks at a sphere from slightly above, so that it fills the picture.
     ///
     /// `centre` and `radius` in metres; `aspect` is width over height.
@@ -56,9 +65,45 @@ impl Camera {
         let half_height = 0.5 * FIELD_OF_VIEW.to_radians();
         let half_angle = (half_height.tan() * aspect.min(1.0)).atan();
         let distance = radius.max(f64::MIN_POSITIVE) * MARGIN / half_angle.sin();
-        let (sin, cos) = ELEVATION.to_radians().sin_cos();
-        let position = centre + distance * DVec3::new(0.0, sin, cos);
+        let position = centre + distance * Self::towards_eye(ELEVATION, 0.0);
         Self { position, target: centre, up: DVec3::Y, field_of_view: FIELD_OF_VIEW }
+    }
+
+    /// Looks against `back` at a set of points, metres, so that they fill the share `fill` of the picture, 0 to 1, in the
+    /// direction that limits, and are centred in both. `aspect` is width over height.
+    ///
+    /// Equation: in camera axes an eye at `(x, y, z)` sees a point at `(X, Y, Z)` within the share if `|X - x| <= k (z - Z)`,
+    /// `k = fill aspect tan(field of view / 2)`, and alike for `Y`. The least `z` for which such an `x` exists is
+    /// `(max(X + k Z) + max(-X + k Z)) / 2k`, with `x = (max(X + k Z) - max(-X + k Z)) / 2`.
+    ///
+    /// # Errors
+    /// [`PictureError::NoPoints`] for an empty set, [`PictureError::CameraWithoutDirection`] if `back` is zero or vertical.
+    pub fn filling(points: &[DVec3], back: DVec3, fill: f64, aspect: f64) -> Result<Self, PictureError> {
+        let first = *points.first().ok_or(PictureError::NoPoints)?;
+        let unplaced = Self { position: first + back, target: first, up: DVec3::Y, field_of_view: FIELD_OF_VIEW };
+        let axes = unplaced.view(aspect, 1.0)?;
+        let half_height = fill * (0.5 * FIELD_OF_VIEW.to_radians()).tan();
+        let placed: Vec<DVec3> = points.iter().map(|p| axes.turn(p - first)).collect();
+        let highest = |of: &dyn Fn(&DVec3) -> f64| placed.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let fit = |axis: DVec3, k: f64| {
+            let (over, under) = (highest(&|p| p.dot(axis) + k * p.z), highest(&|p| k * p.z - p.dot(axis)));
+            (0.5 * (over - under), 0.5 * (over + under) / k)
+        };
+        let nearest = highest(&|p| p.z);
+        let smallest = 1e-9 * first.length().max(1e-3);
+        let (by_width, by_height) = (fit(DVec3::X, half_height * aspect).1, fit(DVec3::Y, half_height).1);
+        let distance = by_width.max(by_height).max(nearest + smallest);
+        // The axis that does not limit: the smaller share that needs the same distance. The distance falls with the share.
+        let centred = |axis: DVec3, widest: f64| {
+            let (_, share) = (0..HALVINGS).fold((0.0, widest), |(low, high), _| {
+                let middle = 0.5 * (low + high);
+                if fit(axis, middle).1 > distance { (middle, high) } else { (low, middle) }
+            });
+            fit(axis, share).0
+        };
+        let eye = DVec3::new(centred(DVec3::X, half_height * aspect), centred(DVec3::Y, half_height), distance);
+        let position = first + eye.x * axes.right + eye.y * axes.up + eye.z * axes.back;
+        Ok(Self { position, target: position - (eye.z - nearest) * axes.back, ..unplaced })
     }
 
     /// Frames a set of points, metres: their bounding box fits. For an animation, frame once and keep the camera.

@@ -131,20 +131,21 @@ impl Studio {
     }
 }
 
-/// The white tent around the stage: bright above, dim below and towards the backdrop, a soft glow behind the camera.
+/// The white tent around the stage: bright above, dim below and towards the backdrop, a large soft light behind the camera.
 ///
 /// The tent dims towards the back because film seen at an angle mirrors more of it: the middle and the rim of a bubble
 /// then fit one exposure.
 fn walls(direction: Vec3) -> Vec3 {
     let ceiling = soft_step(-0.9, 0.9, direction.y);
     let front = soft_step(-0.9, 0.7, direction.z);
-    let glow = soft_step(0.6, 1.0, direction.dot(GLOW));
+    let glow = soft_step(0.72, 1.0, direction.dot(GLOW));
     let backdrop = soft_step(0.93, 0.995, -direction.z);
-    let tent = (0.6 + 1.9 * ceiling) * (0.5 + 0.75 * front) + 2.8 * glow;
+    let tent = (0.6 + 1.9 * ceiling) * (0.5 + 0.75 * front) + 6.5 * glow;
     Vec3::new(0.99, 1.0, 1.02) * (tent * (1.0 - backdrop) + 0.22 * backdrop)
 }
 
-/// Direction of the glow: what a wall facing a slightly raised camera mirrors.
+/// Middle of the light behind the camera, a little below it: a flat film that faces a slightly raised camera mirrors this
+/// light and nothing else.
 const GLOW: Vec3 = Vec3::new(0.0, -0.287, 0.958);
 
 /// Cubic step from 0 at `from` to 1 at `to`.

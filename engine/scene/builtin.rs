@@ -30,7 +30,7 @@ pub(super) fn register(registry: &mut AuthoredRegistry) {
     registry.register::<Gravity>("Gravity", "field: gravity, may be keyframed");
     registry.register::<Wind>("Wind", "field: air that drags films along, may be keyframed");
     registry.register::<HeatSource>("HeatSource", "field: a warm place, above which films rise");
-    registry.register::<Sweep>("Sweep", "field: a push out of the film that travels over it");
+    registry.register::<Sweep>("Sweep", "field: a pulse of pressure that travels over the film");
     registry.register::<Hover>("Hover", "field: holds bubbles up against gravity");
     registry.register::<AirDrag>("AirDrag", "field: still air that brakes the flow along films");
 }

@@ -84,20 +84,20 @@ fn relaxation(rate: f64, step: f64) -> f64 {
     if step > 0.0 { -(-rate * step).exp_m1() / step } else { rate }
 }
 
-/// Pushes the film along its normal by a pulse that travels over it: `A exp(-(s/width)^2) n`.
+/// Pushes the film along its normal by a pulse of pressure that travels over it: `p exp(-(s/width)^2)`.
 pub fn sweep(
     sweeps: Query<&Sweep>,
-    mut carriers: Query<(&Position, &Normal, &mut ExternalAcceleration), With<EulerianParticle>>,
+    mut carriers: Query<(&Position, &mut ExternalPressure), With<EulerianParticle>>,
     clock: Res<Clock>,
 ) {
-    let (positions, normals, mut pushes) = columns_mut(&mut carriers);
-    let pushes = pushes.bypass_change_detection();
+    let (positions, mut pressures) = columns_mut(&mut carriers);
+    let pressures = pressures.bypass_change_detection();
     for sweep in &sweeps {
-        let strength = sweep.acceleration.at(clock.time).si();
+        let strength = sweep.pressure.at(clock.time).si();
         let front = sweep.start.si() + sweep.speed.si() * clock.time;
-        for ((push, x), n) in pushes.iter_mut().zip(positions).zip(normals) {
+        for (pressure, x) in pressures.iter_mut().zip(positions) {
             let s = (x.0.dot(sweep.direction.unit()) - front) / sweep.width.si();
-            push.0 += n.0 * (strength * (-s * s).exp());
+            pressure.0 += strength * (-s * s).exp();
         }
     }
 }

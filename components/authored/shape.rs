@@ -288,6 +288,13 @@ impl Shape {
                 let turn = DQuat::from_rotation_arc(DVec3::Z, disc.normal.unit());
                 parallel(0).map(|p| disc.centre.si() + disc.radius.si() * (turn * p)).collect()
             }
+            Self::Hexagon(hexagon) => {
+                let (up, across) = (hexagon.up.unit(), hexagon.normal.unit().cross(hexagon.up.unit()));
+                let corner = |k: u32| (TAU / 6.0 * f64::from(k)).sin_cos();
+                let place =
+                    |(sin, cos): (f64, f64)| hexagon.centre.si() + hexagon.radius.si() * (up * cos + across * sin);
+                (0..6).map(corner).map(place).collect()
+            }
             Self::Rectangle(rectangle) => {
                 let half_width = 0.5 * rectangle.width.si() * rectangle.across();
                 let half_height = 0.5 * rectangle.height.si() * rectangle.up.unit();
@@ -306,6 +313,7 @@ impl Shape {
         match self {
             Self::Disc(disc) => Some(disc.normal.unit()),
             Self::Rectangle(rectangle) => Some(rectangle.normal.unit()),
+            Self::Hexagon(hexagon) => Some(hexagon.normal.unit()),
             Self::Sphere(_) | Self::Ellipsoid(_) | Self::HalfSphere(_) => None,
         }
     }
@@ -382,13 +390,19 @@ mod tests {
             normal: Direction::X,
             up: Direction::Y,
         };
-        let shapes: [(Shape, Reach); 5] = [
+        let hexagon = Hexagon { centre, radius, normal: Direction::X, up: Direction::Y };
+        let shapes: [(Shape, Reach); 6] = [
             (Shape::Sphere(Sphere { centre, radius }), &|_| 0.05),
             (Shape::Ellipsoid(Ellipsoid { centre, radii: Radii(radii) }), &|d| (radii * d).length()),
             (Shape::HalfSphere(HalfSphere { centre, radius, up: tilted }), &|d| {
                 if d.dot(tilted.unit()) > 0.0 { 0.05 } else { along_disc(d) }
             }),
             (Shape::Disc(Disc { centre, radius, normal: tilted }), &along_disc),
+            (Shape::Hexagon(hexagon), &|d| {
+                let flat = DVec3::new(0.0, d.y, d.z);
+                let towards_corner = flat.y.atan2(flat.z).rem_euclid(TAU / 6.0) - TAU / 12.0;
+                0.05 * flat.length() * towards_corner.cos().max(0.0)
+            }),
             (Shape::Rectangle(rectangle), &|d| 0.2 * d.z.abs() + 0.1 * d.y.abs()),
         ];
         for (shape, reach) in shapes {

@@ -15,6 +15,7 @@ use froth_components::kind::{EulerianParticle as E, LagrangianParticle as L};
 use froth_components::lamella::Lamellae;
 use froth_components::motion::{Normal, Position, Velocity, VelocityGradient};
 use froth_systems::melp::carriers::refit;
+use froth_systems::melp::frames::FilmFrames;
 use froth_systems::melp::gather::{Material, gather_all};
 use froth_systems::melp::links::Carriers;
 use froth_systems::melp::material::{MovingMaterial, advance_all};
@@ -125,6 +126,6 @@ fn measure_transfers(simulation: &mut Simulation, carriers: Carriers, shapes: &[
             gradients: &mut gradients,
             regions: &regions,
         };
-        advance_all(material, carriers, shapes, 1e-6, |_| None)
+        advance_all(material, carriers, shapes, 1e-6, &FilmFrames::default(), |_| None)
     });
 }

@@ -28,6 +28,12 @@ pub struct IdealGas {
 }
 
 impl IdealGas {
+    /// The law of a region.
+    #[must_use]
+    pub fn of(volume: &ReferenceVolume, pressure: &ReferencePressure, exponent: &GasExponent) -> Self {
+        Self { reference_pressure: pressure.0, reference_volume: volume.0, exponent: exponent.0 }
+    }
+
     /// Pressure at `volume`, Pa.
     #[must_use]
     pub fn pressure(&self, volume: f64) -> f64 {

@@ -39,6 +39,7 @@ Scene(
         [ HalfSphere(radius: "8 cm", up: (0, 1, 0)), HarmonicMode(degree: 3, order: -3, amplitude: 0.05), Film(thickness: Wave(mean: "400 nm", wavelengths: 3, phase: "90 deg"), surfactant: WithThickness, warmth: 0.5) ],
         [ Disc(radius: "8 cm"), Film(thickness: Noise(mean: "400 nm", octaves: 3, seed: 5)), Spin(rate: "1 rpm"), Swirl(speed: "5 cm/s") ],
         [ Rectangle(width: "20 cm", height: "10 cm"), Film(thickness: Uniform("400 nm")), Swirl(pattern: Harmonic(degree: 2), speed: 0.05) ],
+        [ Hexagon(radius: "5 cm"), Film(thickness: Uniform("400 nm")) ],
         [ Gravity([(t: 0, v: (0, 0, 0)), (t: "1 s", v: (0.0, "-9.81 m/s^2", 0.0))]) ],
         [ Wind(velocity: (1, 0, 0), drag: "2 1/s") ],
         [ HeatSource(position: (0, "-10 cm", 0), radius: "5 cm", warming: "100 ms", cooling: 0.6, expansion: 0.3) ],

@@ -23,6 +23,7 @@ use froth_components::motion::{
 };
 use froth_systems::forces;
 use froth_systems::melp::discretise::{AuthoredFilm, DiscreteFilm, Sampling};
+use froth_systems::melp::frames::{self, FilmFrames};
 use froth_systems::melp::normal_motion::NormalMotion;
 use froth_systems::melp::settings::Melp;
 use froth_systems::melp::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
@@ -53,9 +54,11 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let always = Requires::nothing;
     let liquid = Requires::kind::<LagrangianParticle>;
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
+    plan.add(Stage::Clock, "follow free films", frames::follow_films, always());
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
     plan.add(Stage::Clock, "limit substeps by tension", normal_motion::limit_step_by_tension, always());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
+    plan.add(Stage::Gather, "enter the films' frames", frames::enter_frames, liquid());
     plan.add(Stage::Gather, "link the particle sets and gather liquid (L2E)", gather::gather_liquid, liquid());
     plan.add(Stage::Gather, "measure concentration", measure::measure_concentration, liquid());
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
@@ -63,10 +66,10 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Geometry, "measure gas pressure", measure::measure_pressure, always());
     plan.add(Stage::Forces, "clear external forces", forces::clear, always());
     plan.add(Stage::Forces, "gravity", forces::pull_by_gravity, Requires::component::<Gravity>("gravity"));
+    plan.add(Stage::Forces, "hold closed films up", forces::hold_up, Requires::component::<Hover>("hover"));
     plan.add(Stage::Forces, "wind", forces::drag_by_wind, Requires::component::<Wind>("a wind"));
     plan.add(Stage::Forces, "air drag", forces::brake_in_air, Requires::component::<AirDrag>("air drag"));
     plan.add(Stage::Forces, "sweep", forces::sweep, Requires::component::<Sweep>("a sweep"));
-    plan.add(Stage::Forces, "hold closed films up", forces::hold_up, Requires::component::<Hover>("hover"));
     plan.add(Stage::Dynamics, "advance normal motion", normal_motion::advance_normal_motion, always());
     plan.add(Stage::Dynamics, "accelerate the liquid", inertia::accelerate_liquid, liquid());
     plan.add(Stage::Dynamics, "solve for concentration and flow (Marangoni)", marangoni::solve_marangoni, elastic());
@@ -77,6 +80,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Advance, "warm the liquid", forces::heat::warm_liquid, heated);
     plan.add(Stage::Advance, "redistribute carriers", carriers::redistribute_carriers, always());
     plan.add(Stage::Advance, "move liquid and project it", material::advance_material, liquid());
+    plan.add(Stage::Advance, "leave the films' frames", frames::leave_frames, liquid());
     plan.add(Stage::Topology, "sort the liquid's rows", sorting::sort_material, liquid());
     plan.add(Stage::Observe, "measure films", observe::observe_films, always());
     plan.add(Stage::Observe, "measure the liquid", observe::observe_liquid, liquid());
@@ -121,6 +125,7 @@ pub fn register(world: &mut World) {
     StateRegistry::register::<Lamellae>(world, "lamellae");
     world.insert_resource(Melp::new(&settings(world)));
     world.init_resource::<FilmStencil>();
+    world.init_resource::<FilmFrames>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();
     world.init_resource::<NormalMotion>();
@@ -275,6 +280,8 @@ fn fill_carriers(world: &mut World, films: &[DiscreteFilm], liquid: Liquid) {
     fill_column::<E, _>(world, &concat(films, |_, film| film.normals.clone()));
     fill_column::<E, _>(world, &concat(films, |_, film| film.shapes.clone()));
     fill_column::<E, _>(world, &concat(films, |_, film| film.speeds.iter().map(|s| NormalSpeed(*s)).collect()));
+    let spacing = world.resource::<Lamellae>().spacing;
+    fill_column::<E, _>(world, &concat(films, |_, film| vec![Area(spacing * spacing); film.positions.len()]));
     let concentration = concat(films, |_, film| film.concentration.clone());
     let tension = |gamma: &f64| SurfaceTension(liquid.tension_at(*gamma));
     fill_column::<E, _>(world, &concentration.iter().map(tension).collect::<Vec<_>>());

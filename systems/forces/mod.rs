@@ -103,7 +103,8 @@ pub fn sweep(
 }
 
 /// Holds closed films up: a pressure difference linear in space, `p = -b . (x - centre)`, that carries each film's
-/// weight exactly in the sum over its particles. Tangential gravity stays whole, so films drain and swirl.
+/// weight exactly in the sum over its particles. Tangential gravity stays whole, so films drain and swirl. Runs right after
+/// gravity: what is pushed so far is the weight, and no other force is held against.
 pub fn hold_up(
     hovering: Query<Entity, With<Hover>>,
     mut carriers: Query<

@@ -2,12 +2,13 @@
 //! after the last.
 //!
 //! # Equation
-//! `x += zeta n`; at last tangential displacements by [`redistribution`](super::redistribution).
+//! `x += U d + zeta n` with the velocity `U` of the film's [frame](super::frames); at last tangential displacements by [`redistribution`](super::redistribution).
 //!
 //! # Source
 //! Deng 2022, Algorithm 6, Eq. 19. DEVIATION: no persistent tangential velocity of carriers; redistribution places
 //! them, so nothing needs XSPH to stay stable.
 
+use super::frames::{FilmFrames, mean_motion};
 use super::normal_motion::NormalMotion;
 use super::redistribution::{EVEN_ENOUGH, Spread, lift, unevenness};
 use super::settings::Melp;
@@ -15,17 +16,20 @@ use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
 use crate::observe::{Fault, Faults, Observables};
 use crate::operators::quadratic::refit_all;
 use crate::operators::stencil::{FIT_SUPPORT, Points, Stencil};
+use crate::operators::tangent::{outer, tangential};
+use crate::rows::reduce::ordered_sum;
 use crate::rows::{columns, columns_mut};
 use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
-use froth_components::film::{ShapeOperator, SurfaceTension, Surfactant};
+use froth_components::film::{Area, ShapeOperator, SurfaceTension, Surfactant, Thickness};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle};
-use froth_components::lamella::Lamellae;
+use froth_components::lamella::{Lamella, Lamellae};
+use froth_components::material::Liquid;
 use froth_components::motion::{Normal, NormalSpeed, Position, Velocity};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -37,35 +41,103 @@ type Places<'w, 's> = Query<
     (With<EulerianParticle>, Without<BoundaryParticle>),
 >;
 
-/// Moves the carriers along their normals, rebuilds the stencil there and refits normals and shape operators; the flow
-/// turns with the normals.
+/// Columns of what a carrier moves with.
+type Moving<'w, 's> = Query<
+    'w,
+    's,
+    (&'static Area, &'static Thickness, &'static mut NormalSpeed, &'static mut Velocity),
+    With<EulerianParticle>,
+>;
+
+/// Moves the carriers with their films' frames and along their normals, rebuilds the stencil there and refits normals and
+/// shape operators. The flow turns with the normals; what that does to the momentum of a free film is given back to it.
 pub fn deform_film(
     mut carriers: Places,
-    mut moving: Query<(&NormalSpeed, &mut Velocity), With<EulerianParticle>>,
+    mut moving: Moving,
     walls: Query<(&Position, &InRegion), With<BoundaryParticle>>,
     lamellae: Res<Lamellae>,
-    motion: Res<NormalMotion>,
+    liquid: Res<Liquid>,
     clock: Res<Clock>,
+    frames: Res<FilmFrames>,
     transfers: Res<Transfers>,
+    mut motion: ResMut<NormalMotion>,
+    mut observables: ResMut<Observables>,
     mut stencil: ResMut<FilmStencil>,
     mut flow: ResMut<TangentialFlow>,
 ) {
     let (regions, mut positions, mut normals, mut shapes) = columns_mut(&mut carriers);
     let positions = positions.bypass_change_detection();
     let normals = normals.bypass_change_detection();
-    flow.follow(&transfers.normals, normals, clock.substep_length());
+    let (areas, thickness, mut speeds, mut velocities) = columns_mut(&mut moving);
+    let step = clock.substep_length();
+    flow.follow(&transfers.normals, normals, step);
     let before = normals.to_vec();
-    for ((x, n), zeta) in positions.iter_mut().zip(&*normals).zip(&motion.displacement) {
-        x.0 += n.0 * *zeta;
+    let mut relative: Vec<f64> = (0..before.len()).map(|i| motion.displacement[i] / step).collect();
+    let momentum = |normals: &[Normal], flow: &[DVec3], speeds: &[f64]| -> Vec<Momentum> {
+        let films = lamellae.films.iter().filter(|film| film.rim.is_none());
+        films.map(|film| Momentum::of(film, liquid.density, normals, areas, thickness, flow, speeds)).collect()
+    };
+    let was = momentum(&before, &flow.solved, &relative);
+    for (i, (x, n)) in positions.iter_mut().zip(&before).enumerate() {
+        x.0 += frames.of(regions[i]) * step + n.0 * motion.displacement[i];
     }
     let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
     let spacing = lamellae.spacing;
     stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
     refit(&stencil.0, spacing, positions, normals, shapes.bypass_change_detection());
     flow.turn(&before, normals);
-    let (speeds, mut velocities) = columns_mut(&mut moving);
-    for (i, velocity) in velocities.bypass_change_detection().iter_mut().enumerate() {
-        velocity.0 = flow.present.get(i).copied().unwrap_or_default() + normals[i].0 * speeds[i].0;
+    let is = momentum(normals, &flow.present, &relative);
+    for (is, was) in is.iter().zip(&was) {
+        let shift = mean_motion(was.momentum - is.momentum, is.mass);
+        motion.momentum_correction = motion.momentum_correction.max(shift.length());
+        for i in is.rows.clone() {
+            let n = normals[i].0;
+            relative[i] += shift.dot(n);
+            if let Some(u) = flow.present.get_mut(i) {
+                *u += tangential(shift, n);
+            }
+        }
+    }
+    observables.raise("momentum_correction", "m/s", motion.momentum_correction);
+    let velocities = velocities.bypass_change_detection();
+    for (i, speed) in speeds.bypass_change_detection().iter_mut().enumerate() {
+        let (n, frame) = (normals[i].0, frames.of(regions[i]));
+        speed.0 = relative[i] + frame.dot(n);
+        velocities[i].0 = flow.whole_velocity(i, frame, n, speed.0);
+    }
+}
+
+/// Momentum and inertia of one free film, relative to its frame.
+struct Momentum {
+    rows: Range<usize>,
+    momentum: DVec3,
+    mass: DMat3,
+}
+
+impl Momentum {
+    /// `sum m u + (m + m_air) s n` and `sum m (1 - n n^T) + (m + m_air) n n^T`; without a flow, its normal parts alone.
+    fn of(
+        film: &Lamella,
+        density: f64,
+        normals: &[Normal],
+        areas: &[Area],
+        thickness: &[Thickness],
+        flow: &[DVec3],
+        speeds: &[f64],
+    ) -> Self {
+        let (rows, start) = (film.carriers.clone(), film.carriers.start);
+        let normal_part = |i: usize| (density * thickness[i].0 + film.air_mass) * areas[i].0;
+        let flowing_part = |i: usize| if flow.is_empty() { 0.0 } else { density * thickness[i].0 * areas[i].0 };
+        let momentum = ordered_sum(rows.len(), DVec3::ZERO, |k| {
+            let i = start + k;
+            let along = flow.get(i).copied().unwrap_or_default() * flowing_part(i);
+            along + normals[i].0 * (normal_part(i) * speeds[i])
+        });
+        let mass = ordered_sum(rows.len(), DMat3::ZERO, |k| {
+            let (i, n) = (start + k, normals[start + k].0);
+            DMat3::from_diagonal(DVec3::splat(flowing_part(i))) + outer(normal_part(i) - flowing_part(i), n, n)
+        });
+        Self { rows, momentum, mass }
     }
 }
 

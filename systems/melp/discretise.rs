@@ -5,6 +5,7 @@
 //! so that a uniform film starts uniform to the last per mille of sampling noise.
 
 use super::carriers::refit;
+use super::frames::FilmFrames;
 use super::gather::gather_scalar;
 use super::links::Carriers;
 use super::material::{MovingMaterial, advance_all};
@@ -223,7 +224,7 @@ impl DiscreteFilm {
             regions: &liquid_regions,
         };
         let rim = self.rim;
-        advance_all(moving, carriers, &self.shapes, 0.0, |_| rim);
+        advance_all(moving, carriers, &self.shapes, 0.0, &FilmFrames::default(), |_| rim);
         let rows = Rows { positions: &positions, normals: &normals, regions: &liquid_regions };
         let areas = fair_areas(carriers, &duals, rows);
         let places: Vec<DVec3> = positions.iter().map(|p| p.0).collect();

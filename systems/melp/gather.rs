@@ -11,6 +11,7 @@
 //! Deng 2022, Algorithm 1, Eqs 6 and 7. DEVIATION: Eq. 7 lacks the mass of the particle; vectors are rotated, not
 //! projected; the normal velocity lives on the carriers and is not gathered.
 
+use super::frames::FilmFrames;
 use super::links::{Carriers, Link};
 use super::state::{FilmStencil, TangentialFlow, Transfers};
 use super::tiles::{Hit, PIECE, Rows, Site, Tile};
@@ -204,6 +205,7 @@ pub fn gather_liquid(
     lamellae: Res<Lamellae>,
     stencil: Res<FilmStencil>,
     mut transfers: ResMut<Transfers>,
+    frames: Res<FilmFrames>,
     mut flow: ResMut<TangentialFlow>,
     mut faults: ResMut<Faults>,
 ) {
@@ -226,7 +228,8 @@ pub fn gather_liquid(
         volumes.bypass_change_detection()[i].0 = g.volume;
         surfactants.bypass_change_detection()[i].0 = g.surfactant;
         warmth.bypass_change_detection()[i].0 = g.warm_volume / g.volume;
-        velocities.bypass_change_detection()[i].0 = flow.gathered[i] + normals[i].0 * speeds[i].0;
+        velocities.bypass_change_detection()[i].0 =
+            flow.whole_velocity(i, frames.of(regions[i]), normals[i].0, speeds[i].0);
     }
 }
 

@@ -157,7 +157,7 @@ pub fn solve_marangoni(
     let films: Vec<Range<usize>> = lamellae.films.iter().map(|film| film.carriers.clone()).collect();
     let mut concentration: Vec<f64> = surfactant.iter().map(|gamma| gamma.0).collect();
     match problem.solve(&films, melp.marangoni, &mut concentration, &mut solvers.marangoni) {
-        Ok(info) => observables.record("marangoni_iterations", "1", f64::from(info.iterations)),
+        Ok(info) => observables.add("marangoni_iterations", "1", f64::from(info.iterations)),
         Err(failed) => {
             faults.report(Fault::new(Stage::Dynamics, "Marangoni solve", failed.to_string()));
             return;

@@ -8,6 +8,7 @@
 //! Deng 2022, Algorithm 7, §4.8 (moving least squares). DEVIATION: blended quadratics are smooth between particles and
 //! need no solve per particle.
 
+use super::frames::FilmFrames;
 use super::links::Carriers;
 use super::state::{FilmStencil, Transfers};
 use super::tiles::{PIECE, Rows, Tile};
@@ -53,13 +54,14 @@ pub struct MovingMaterial<'a> {
     pub regions: &'a [InRegion],
 }
 
-/// Moves all material particles by `step` seconds onto the film given by `carriers` and their `shapes`; `rim(region)`
+/// Moves all material particles by `step` seconds, with their films' frames, onto the film given by `carriers` and their `shapes`; `rim(region)`
 /// is the rim of a region's film. Returns how many found no carrier in reach.
 pub fn advance_all(
     material: MovingMaterial,
     carriers: Carriers,
     shapes: &[ShapeOperator],
     step: f64,
+    frames: &FilmFrames,
     rim: impl Fn(InRegion) -> Option<Rim> + Sync,
 ) -> usize {
     let MovingMaterial { positions, normals, drift, velocities, gradients, regions } = material;
@@ -68,7 +70,7 @@ pub fn advance_all(
     let pieces = places.zip(flow).zip(regions.par_chunks(PIECE));
     let advance = |projector: &mut Projector, ((((positions, normals), drift), (velocities, gradients)), regions)| {
         let piece = MovingMaterial { positions, normals, drift, velocities, gradients, regions };
-        projector.advance(piece, carriers, shapes, step, &rim)
+        projector.advance(piece, carriers, shapes, step, frames, &rim)
     };
     pieces.map_init(Projector::default, advance).sum()
 }
@@ -93,10 +95,14 @@ impl Projector {
         carriers: Carriers,
         shapes: &[ShapeOperator],
         step: f64,
+        frames: &FilmFrames,
         rim: impl Fn(InRegion) -> Option<Rim>,
     ) -> usize {
         let MovingMaterial { positions, normals, drift, velocities, gradients, regions } = material;
-        let moved = |l: usize| confined(rim(regions[l]), drifted(positions[l].0, drift[l], gradients[l].0, step));
+        let moved = |l: usize| {
+            let carried = positions[l].0 + frames.of(regions[l]) * step;
+            confined(rim(regions[l]), drifted(carried, drift[l], gradients[l].0, step))
+        };
         self.places.clear();
         self.places.extend((0..positions.len()).map(|l| Position(moved(l))));
         self.normals.clear();
@@ -158,6 +164,7 @@ pub fn advance_material(
     lamellae: Res<Lamellae>,
     stencil: Res<FilmStencil>,
     transfers: Res<Transfers>,
+    frames: Res<FilmFrames>,
     clock: Res<Clock>,
     mut faults: ResMut<Faults>,
 ) {
@@ -173,7 +180,7 @@ pub fn advance_material(
         regions,
     };
     let rim = |region: InRegion| lamellae.films.iter().find(|film| film.region == region.0).and_then(|film| film.rim);
-    let lost = advance_all(moving, carriers, shapes, clock.step_length, rim);
+    let lost = advance_all(moving, carriers, shapes, clock.step_length, &frames, rim);
     if lost > 0 {
         let detail = format!("of {lost} material particles is farther from the film than any carrier reaches");
         faults.report(Fault::new(Stage::Advance, "position", detail));

@@ -21,7 +21,7 @@ use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
 use froth_components::film::{
-    Area, LiquidVolume, MeanCurvature, ShapeOperator, SurfaceTension, Surfactant, SurfactantAmount, Thickness,
+    Area, LiquidVolume, MeanCurvature, ShapeOperator, Surfactant, SurfactantAmount, Thickness,
 };
 use froth_components::gas::{GasExponent, GasPressure, GasVolume, IdealGas, ReferencePressure, ReferenceVolume};
 use froth_components::identity::InRegion;
@@ -51,6 +51,14 @@ pub fn enclosed_volume(
     let start = rows.start;
     let term = |i: usize| areas[start + i] * (positions[start + i].0 - origin).dot(normals[start + i].0);
     ordered_sum(rows.len(), 0.0, term) / 3.0
+}
+
+/// Centre of the film in `rows`, m. A closed film's volume is measured from here: from afar, what its sampled normals leave
+/// of `sum a n = 0` would count.
+fn centre(positions: &[Position], areas: &[f64], rows: Range<usize>) -> DVec3 {
+    let start = rows.start;
+    let first = ordered_sum(rows.len(), DVec3::ZERO, |k| positions[start + k].0 * areas[start + k]);
+    first / ordered_sum(rows.len(), 0.0, |k| areas[start + k])
 }
 
 /// Measures areas and curvature from the stencil.
@@ -116,11 +124,6 @@ pub fn measure_thickness(
     }
 }
 
-/// Sets the surface tension that a film without surfactant has everywhere.
-pub fn set_plain_tension(mut carriers: Query<&mut SurfaceTension, With<EulerianParticle>>, liquid: Res<Liquid>) {
-    columns_mut(&mut carriers).bypass_change_detection().fill(SurfaceTension(liquid.surface_tension));
-}
-
 /// Time in which the evolved volume follows the measured one, s.
 const VOLUME_MEMORY: f64 = 0.02;
 
@@ -145,17 +148,18 @@ pub fn measure_pressure(
         let (mut volume, reference_volume, reference_pressure, exponent, mut pressure) = region;
         if film.encloses_gas() {
             let rows = film.carriers.clone();
-            let measured = enclosed_volume(positions, normals, &stencil.0.areas, rows, film.volume_origin());
+            let areas = &stencil.0.areas;
+            let origin = match film.rim {
+                None => centre(positions, areas, rows.clone()),
+                Some(_) => film.volume_origin(),
+            };
+            let measured = enclosed_volume(positions, normals, areas, rows, origin);
             let share = -(-clock.substep_length() / VOLUME_MEMORY).exp_m1();
             let follow = share * (measured - volume.0);
             observables.record(&format!("measured_volume_{}", film.region.0), "m^3", measured);
-            observables.record("volume_followed", "1", follow / volume.0);
+            observables.add("volume_followed", "1", follow / volume.0);
             volume.0 += follow;
-            let law = IdealGas {
-                reference_pressure: reference_pressure.0,
-                reference_volume: reference_volume.0,
-                exponent: exponent.0,
-            };
+            let law = IdealGas::of(reference_volume, reference_pressure, exponent);
             pressure.0 = law.pressure(volume.0);
         }
     }

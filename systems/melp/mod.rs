@@ -15,6 +15,7 @@
 
 pub mod carriers;
 pub mod discretise;
+pub mod frames;
 pub mod gather;
 pub mod inertia;
 pub mod links;

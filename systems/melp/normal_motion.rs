@@ -18,14 +18,15 @@
 //! Deng 2022, Algorithm 3, Eq. 12 (sign of the curvature and factor 2 corrected).
 //!
 //! # Limits
-//! `-2 u . grad s` (the film's own advection of its normal momentum) is left out: relative error `u/c`, a few per cent
+//! In the film's [frame](super::frames), `-2 u . grad s` (the film's own advection of its normal momentum) is left out: relative error `u/c`, a few per cent
 //! of the film's share of the inertia.
 
+use super::frames::FilmFrames;
 use super::settings::Melp;
 use super::state::FilmStencil;
 use crate::clock::StepLimits;
 use crate::operators::stencil::Stencil;
-use crate::operators::tangent::outer;
+use crate::operators::tangent::{outer, tangential};
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::rows::{columns, columns_mut};
 use bevy_ecs::query::{With, Without};
@@ -35,6 +36,7 @@ use froth_components::clock::Clock;
 use froth_components::film::{MeanCurvature, ShapeOperator, SurfaceTension, Thickness};
 use froth_components::gas::IdealGas;
 use froth_components::gas::{GasExponent, GasVolume, ReferencePressure, ReferenceVolume};
+use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
 use froth_components::lamella::Lamellae;
 use froth_components::material::{Atmosphere, Liquid};
@@ -89,7 +91,7 @@ pub struct EnclosedGas {
 /// What the normal motion did over a substep.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct NormalMotion {
-    /// Displacement `zeta` along the normal, m, per carrier.
+    /// Displacement `zeta` along the normal, relative to the film's frame, m, per carrier.
     pub displacement: Vec<f64>,
     /// Largest rigid correction of the normal speed by the balance of momentum, m/s.
     pub momentum_correction: f64,
@@ -198,6 +200,7 @@ type NormalColumns<'w, 's> = Query<
         &'static ExternalAcceleration,
         &'static ExternalPressure,
         &'static Velocity,
+        &'static InRegion,
         &'static mut NormalSpeed,
     ),
     (With<EulerianParticle>, Without<BoundaryParticle>, Without<Region>),
@@ -213,18 +216,19 @@ pub fn advance_normal_motion(
     liquid: Res<Liquid>,
     atmosphere: Res<Atmosphere>,
     clock: Res<Clock>,
+    frames: Res<FilmFrames>,
     mut motion: ResMut<NormalMotion>,
 ) {
     let wall = if walls.is_empty() { &[][..] } else { columns(&walls) };
-    let (positions, normals, shapes, curvature, tension, thickness, pushes, pressures, velocities, mut speeds) =
+    let (positions, normals, shapes, curvature, tension, thickness, pushes, pressures, velocities, regions, mut speeds) =
         columns_mut(&mut carriers);
     let speeds = speeds.bypass_change_detection();
     let inertia = Inertia { density: liquid.density, lamellae: &lamellae };
     let tension: Vec<f64> = tension.iter().map(|t| t.0).collect();
     let stencil = &stencil.0;
     let load = |i: usize| {
-        let (n, u) = (normals[i].0, velocities[i].0);
-        let u = u - n * n.dot(u);
+        let n = normals[i].0;
+        let u = tangential(velocities[i].0 - frames.of(regions[i]), n);
         let film = liquid.density * thickness[i].0;
         pressures[i].0 + film * (pushes[i].0.dot(n) + u.dot(shapes[i].0 * u))
     };
@@ -243,14 +247,11 @@ pub fn advance_normal_motion(
         tangential: &tension_gradients(stencil, positions, normals, &tension),
         inertia: &inertia.per_area(thickness),
     };
-    let mut state: Vec<f64> = speeds.iter().map(|s| s.0).collect();
+    let along_frame = |i: usize| frames.of(regions[i]).dot(normals[i].0);
+    let mut state: Vec<f64> = speeds.iter().enumerate().map(|(i, s)| s.0 - along_frame(i)).collect();
     motion.reset(count);
     for (film, (mut volume, reference_volume, reference_pressure, exponent)) in lamellae.films.iter().zip(&mut gases) {
-        let law = IdealGas {
-            reference_pressure: reference_pressure.0,
-            reference_volume: reference_volume.0,
-            exponent: exponent.0,
-        };
+        let law = IdealGas::of(reference_volume, reference_pressure, exponent);
         let mut gas =
             film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
         forces.advance(
@@ -265,7 +266,7 @@ pub fn advance_normal_motion(
             volume.0 = gas.volume;
         }
     }
-    speeds.iter_mut().zip(&state).for_each(|(slot, s)| slot.0 = *s);
+    speeds.iter_mut().zip(&state).enumerate().for_each(|(i, (slot, s))| slot.0 = *s + along_frame(i));
 }
 
 /// Inertia of the film and of the air that moves with it.

@@ -33,7 +33,7 @@ pub struct Transfers {
     pub drift: Vec<DVec3>,
 }
 
-/// Tangential flow on the carriers.
+/// Tangential flow on the carriers, relative to their films' [frames](super::frames).
 #[derive(Resource, Default)]
 pub struct TangentialFlow {
     /// As gathered, m/s, in the planes of the step's start.
@@ -56,6 +56,13 @@ impl TangentialFlow {
         self.gathered.clone_into(&mut self.present);
         self.path.clear();
         self.path.resize(self.gathered.len(), DVec3::ZERO);
+    }
+
+    /// Velocity of carrier `i` at rest before the present substep, tangential and normal, m/s; `frame` is its film's,
+    /// `speed` along the unit normal `n` that at rest.
+    #[must_use]
+    pub fn whole_velocity(&self, i: usize, frame: DVec3, n: DVec3, speed: f64) -> DVec3 {
+        self.present.get(i).copied().unwrap_or_default() + tangential(frame, n) + n * speed
     }
 
     /// Ends a substep of `length` seconds, solved in the planes of `now` and followed back to those of `start`.

@@ -36,6 +36,17 @@ impl Observables {
         }
     }
 
+    /// Adds to the value of the present step: for what every substep adds to.
+    pub fn add(&mut self, name: &str, unit: &str, value: f64) {
+        self.record(name, unit, self.get(name).unwrap_or(0.0) + value);
+    }
+
+    /// Raises the value of the present step to `value` if that is larger or not a number: for the largest of all substeps.
+    pub fn raise(&mut self, name: &str, unit: &str, value: f64) {
+        let so_far = self.get(name).unwrap_or(value);
+        self.record(name, unit, if value > so_far || value.is_nan() { value } else { so_far });
+    }
+
     /// All quantities, in their order.
     #[must_use]
     pub fn columns(&self) -> &[Observable] {
@@ -68,5 +79,17 @@ mod tests {
         let names: Vec<&str> = observables.columns().iter().map(|column| column.name.as_str()).collect();
         assert_eq!(names, ["volume", "energy"]);
         assert_eq!((observables.get("volume"), observables.get("energy")), (None, Some(3.0)));
+    }
+
+    #[test]
+    fn substeps_add_up_or_leave_the_largest() {
+        let mut observables = Observables::default();
+        for value in [2.0, 3.0, 1.0] {
+            observables.add("iterations", "1", value);
+            observables.raise("largest", "1", value);
+        }
+        assert_eq!((observables.get("iterations"), observables.get("largest")), (Some(6.0), Some(3.0)));
+        observables.raise("largest", "1", f64::NAN);
+        assert!(observables.get("largest").unwrap().is_nan());
     }
 }

@@ -23,7 +23,6 @@ use super::tangent::{in_space, plane_inverse, plane_outer, tangential};
 use crate::neighbours::cells::CellList;
 use crate::neighbours::kernel::Kernel;
 use crate::neighbours::lists::NeighbourLists;
-use froth_components::film::Area;
 use froth_components::identity::InRegion;
 use froth_components::motion::{Normal, Position};
 use glam::{DMat2, DMat3, DVec2, DVec3};
@@ -281,11 +280,6 @@ where
         piece.iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     });
     flat
-}
-
-/// Copies the stencil's areas into a column.
-pub fn copy_areas(stencil: &Stencil, areas: &mut [Area]) {
-    areas.iter_mut().zip(&stencil.areas).for_each(|(slot, &area)| slot.0 = area);
 }
 
 #[cfg(test)]

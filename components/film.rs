@@ -16,10 +16,11 @@ use glam::DMat3;
 columns! {
     /// Film area `a` that a particle stands for, m^2. Written in the `Geometry` stage.
     pub struct Area(f64), "area", "m^2";
-    /// Film thickness `eta`, metres (soap films: 1e-8 to 1e-5). Written in the `Geometry` stage.
+    /// Film thickness `eta`, metres (soap films: 1e-8 to 1e-5). Written in the `Geometry` stage on
+    /// Eulerian particles, in `Scatter` on Lagrangian ones.
     pub struct Thickness(f64), "thickness", "m";
-    /// Surfactant concentration `Gamma` of one interface, mol/m^2. Written in the `Geometry` stage, and by the
-    /// Marangoni solve.
+    /// Surfactant concentration `Gamma` of one interface, mol/m^2. Written by the Marangoni solve; moves along
+    /// with the redistribution.
     pub struct Surfactant(f64), "surfactant", "mol/m^2";
     /// Surface tension `sigma` of one interface, N/m. Written by the Marangoni solve.
     pub struct SurfaceTension(f64), "surface_tension", "N/m";

@@ -19,6 +19,6 @@ columns! {
     /// stage: this is the plug-in point for new forces.
     pub struct ExternalAcceleration(DVec3), "external_acceleration", "m/s^2";
     /// Sum of the external forces per film area along the normal that do not act on the liquid's mass but on the
-    /// film as a surface (wind, support pressure), Pa. Cleared, then written in the `Forces` stage.
+    /// film as a surface (support, drag on the normal motion, a sweep), Pa. Cleared, then written in the `Forces` stage.
     pub struct ExternalPressure(f64), "external_pressure", "Pa";
 }

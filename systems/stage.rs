@@ -15,8 +15,8 @@ use bevy_ecs::schedule::{ScheduleLabel, SystemSet};
 /// 8. `Constraints`: wires, obstacles, rims
 /// 9. `Deform`: the film follows its own fast motion
 /// 10. `Scatter`: carriers to material particles (E2L; mesh to particle)
-/// 11. `Advance`: move carriers, move material, project
-/// 12. `Topology`: redistribution, remeshing, sorting of rows
+/// 11. `Advance`: spread carriers, move material, project
+/// 12. `Topology`: remeshing, splitting and merging, sorting of rows
 /// 13. `Observe`: diagnostics, checks for finite values, events
 ///
 /// `Geometry` to `Deform` are a substep: they run [`Clock::substeps`](froth_components::clock::Clock) times in a step.
@@ -42,9 +42,9 @@ pub enum Stage {
     Deform,
     /// Carriers to material particles.
     Scatter,
-    /// Move carriers and material.
+    /// Spread carriers, move material.
     Advance,
-    /// Redistribution, remeshing, sorting.
+    /// Remeshing, splitting and merging, sorting.
     Topology,
     /// Diagnostics and checks.
     Observe,

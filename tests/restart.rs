@@ -36,22 +36,6 @@ fn builder() -> SimulationBuilder {
     Simulation::builder().column::<EulerianParticle, Grudge>()
 }
 
-/// Pinned rims, several films, warm liquid, a seeded swirl, and FLIP, which remembers the velocities of the step before.
-const OPEN_FILMS: &str = r#"Scene(
-    title: "Three films",
-    method: Melp(cfl: 0.5, liquid_per_carrier: 4, flip: 0.5, xsph: 0.1, gas: Adiabatic(1.4)),
-    resolution: Particles(900),
-    duration: "0.06 s",
-    frames_per_second: 100,
-    entities: [
-        [ Disc(radius: "4 cm"), Film(thickness: Noise(mean: "400 nm"), warmth: 0.2), Swirl(speed: "5 cm/s") ],
-        [ Rectangle(centre: (0.2, 0.0, 0.0), width: "8 cm", height: "8 cm"), Film(thickness: Uniform("300 nm")) ],
-        [ Sphere(centre: (-0.2, 0.0, 0.0), radius: "3 cm"), Film(thickness: Uniform("300 nm")), Drift((0.1, 0.0, 0.0)) ],
-        [ HeatSource(position: (0.0, -0.03, 0.0), radius: "2 cm") ],
-    ],
-)
-"#;
-
 fn begin(folder: &Path, settings: RunSettings) -> Run {
     begin_scene(common::SCENE, folder, settings)
 }
@@ -115,10 +99,10 @@ fn a_run_that_stops_at_every_step_goes_on_bit_for_bit() {
 fn open_films_several_films_and_warm_liquid_go_on_bit_for_bit() {
     let parent = tempfile::tempdir().unwrap();
     let [whole, stopped] = ["whole", "stopped"].map(|name| parent.path().join(name));
-    begin_scene(OPEN_FILMS, &whole, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
+    begin_scene(common::OPEN_FILMS, &whole, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
     let settings = RunSettings::default();
     let mut stop = StopAfter::step(3, &settings);
-    let end = begin_scene(OPEN_FILMS, &stopped, settings).drive(&mut draw, &mut stop).unwrap();
+    let end = begin_scene(common::OPEN_FILMS, &stopped, settings).drive(&mut draw, &mut stop).unwrap();
     assert!(matches!(end, RunEnd::Stopped { .. }));
     resume(&stopped, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
     assert_same_results(&stopped, &whole);

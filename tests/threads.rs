@@ -2,21 +2,30 @@
 
 mod common;
 
-use common::{SCENE, assert_same_results, draw};
+use common::{OPEN_FILMS, SCENE, assert_same_results, draw};
 use froth::Simulation;
 use froth::run::{Run, RunFolder, RunSettings, Silent};
 use rayon::ThreadPoolBuilder;
 
 #[test]
 fn any_number_of_threads_leaves_the_same_bytes() {
+    // More rows than a chunk of a reduction has, in both kinds.
+    assert_independent_of_threads(SCENE, 2.0);
+}
+
+#[test]
+fn open_films_several_films_and_warm_liquid_do_not_depend_on_threads_either() {
+    assert_independent_of_threads(OPEN_FILMS, 1.5);
+}
+
+fn assert_independent_of_threads(scene: &str, resolution: f64) {
     let parent = tempfile::tempdir().unwrap();
     let folder = |threads: usize| parent.path().join(threads.to_string());
     for threads in [1, 2, 3] {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let folder = RunFolder::create(&folder(threads)).unwrap();
-            // More rows than a chunk of a reduction has, in both kinds.
-            let simulation = Simulation::builder().resolution(2.0).build_from_text("small.ron", SCENE).unwrap();
+            let simulation = Simulation::builder().resolution(resolution).build_from_text("small.ron", scene).unwrap();
             let settings = RunSettings { until: Some(0.04), ..RunSettings::default() };
             let mut run = Run::begin(simulation, folder, settings).unwrap();
             run.drive(&mut draw, &mut Silent).unwrap();

@@ -93,7 +93,7 @@ pub struct MelpSettings {
     #[serde(deserialize_with = "range::positive")]
     pub cfl: Ratio,
     /// Material (Lagrangian) particles per carrier (Eulerian particle), 0 to 1000. Default 16. With 0 the liquid does not flow:
-    /// the film moves along its normal alone, under the tension it has at rest.
+    /// the film moves along its normal alone, with the thickness and under the tension it has at rest.
     #[serde(deserialize_with = "range::particles_per_carrier")]
     pub liquid_per_carrier: u32,
     /// Most steps of the film's own motion (tension, gas, Marangoni flow) in one step of the liquid, 1 to 1000. The liquid moves
@@ -133,7 +133,8 @@ impl Default for MelpSettings {
 /// Air that moves with the film's normal motion, as mass per area of film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 pub enum AirInertia {
-    /// The film moves its own mass alone. Demands substeps of a millisecond or less.
+    /// The film moves its own mass alone. Demands substeps of a millisecond or less; a wobble then fades within some tens of its
+    /// periods by the implicit flow.
     None,
     /// `0.4 ρ_air R` with the size `R` of the film: an estimate, the same for all modes.
     #[default]

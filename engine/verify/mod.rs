@@ -125,7 +125,7 @@ pub const LAWS: &[Law] = &[
     Law {
         name: "drainage",
         summary: "a film at rest under gravity is eta0 exp(-rho g eta0 z/(2 E)) thick, eta0 set by the liquid",
-        source: "Deng 2022, 6.1, fig. 13; rectangle and disc (a circle stands for the hexagon)",
+        source: "Deng 2022, 6.1, fig. 13; rectangle, disc and hexagon",
         measure: drainage::measure,
     },
     Law {

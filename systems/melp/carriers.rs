@@ -155,7 +155,10 @@ pub fn refit(
 /// Spreads the carriers evenly; what they carry moves along by its gradient.
 pub fn redistribute_carriers(
     mut carriers: Places,
-    mut carried: Query<(&mut NormalSpeed, &mut Surfactant, &mut SurfaceTension), With<EulerianParticle>>,
+    mut carried: Query<
+        (&mut NormalSpeed, &mut Surfactant, &mut SurfaceTension, &mut Thickness),
+        With<EulerianParticle>,
+    >,
     walls: Query<&Position, With<BoundaryParticle>>,
     lamellae: Res<Lamellae>,
     melp: Res<Melp>,
@@ -186,17 +189,19 @@ pub fn redistribute_carriers(
     };
     observables.record("redistribution_iterations", "1", f64::from(moves.solve.iterations));
     observables.record("carriers_limited", "1", moves.limited as f64);
-    let (mut speeds, mut surfactant, mut tension) = columns_mut(&mut carried);
+    let (mut speeds, mut surfactant, mut tension, mut thickness) = columns_mut(&mut carried);
     let (speeds, surfactant) = (speeds.bypass_change_detection(), surfactant.bypass_change_detection());
-    let tension = tension.bypass_change_detection();
+    let (tension, thickness) = (tension.bypass_change_detection(), thickness.bypass_change_detection());
     let there = |values: Vec<f64>| moved_values(&stencil.0, positions, normals, &moves.displacement, &values);
     let moved_speed = there(speeds.iter().map(|s| s.0).collect());
     let moved_surfactant = there(surfactant.iter().map(|s| s.0).collect());
     let moved_tension = there(tension.iter().map(|s| s.0).collect());
+    let moved_thickness = there(thickness.iter().map(|s| s.0).collect());
     for i in 0..speeds.len() {
         speeds[i].0 = moved_speed[i];
         surfactant[i].0 = moved_surfactant[i];
         tension[i].0 = moved_tension[i];
+        thickness[i].0 = moved_thickness[i];
     }
     lift(&stencil.0, lamellae.spacing, positions, normals, shapes, &moves.displacement);
     refit(&stencil.0, lamellae.spacing, positions, normals, shapes);

@@ -7,8 +7,8 @@
 //! Deng 2022, Eq. 6, whose weights (`b = 0`) do not conserve momentum in the affine transfer.
 //!
 //! # Limits
-//! Next to a rim, where the correction would make a weight negative, there is none, and velocity gradients are dropped
-//! (`is_one_sided`): only constants pass exactly there. Extrapolated linear fields, passed to and fro, grow by a tenth per
+//! DEVIATION: next to a rim, where the correction would make a weight negative, there is none, and velocity gradients are
+//! dropped (`is_one_sided`): only constants pass exactly there. Extrapolated linear fields, passed to and fro, grow by a tenth per
 //! step.
 
 use super::settings::TRANSFER_SUPPORT;

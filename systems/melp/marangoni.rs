@@ -30,6 +30,7 @@ use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
 use froth_components::film::{MeanCurvature, SurfaceTension, Surfactant, Thickness};
+use froth_components::identity::StableId;
 use froth_components::kind::EulerianParticle;
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
@@ -122,7 +123,7 @@ fn set_constant_mode(film: Range<usize>, reaction: &[f64], b: &[f64], x: &mut [f
 /// Solves for concentration and flow on all films, and sets the surface tension.
 pub fn solve_marangoni(
     mut carriers: Query<
-        (&Position, &Normal, &MeanCurvature, &Thickness, &mut Surfactant, &mut SurfaceTension),
+        (&StableId, &Position, &Normal, &MeanCurvature, &Thickness, &mut Surfactant, &mut SurfaceTension),
         With<EulerianParticle>,
     >,
     stencil: Res<FilmStencil>,
@@ -137,7 +138,7 @@ pub fn solve_marangoni(
     mut observables: ResMut<Observables>,
     mut faults: ResMut<Faults>,
 ) {
-    let (positions, normals, curvature, thickness, mut surfactant, mut tension) = columns_mut(&mut carriers);
+    let (ids, positions, normals, curvature, thickness, mut surfactant, mut tension) = columns_mut(&mut carriers);
     let surfactant = surfactant.bypass_change_detection();
     let tension = tension.bypass_change_detection();
     let step = clock.substep_length();
@@ -175,6 +176,7 @@ pub fn solve_marangoni(
              lower the elasticity or the forces",
             tension[row].0
         );
-        faults.report(Fault::new(Stage::Dynamics, "surface_tension", detail).on_particle("eulerian", row, None));
+        let fault = Fault::new(Stage::Dynamics, "surface_tension", detail);
+        faults.report(fault.on_particle("eulerian", row, Some(ids[row].0)));
     }
 }

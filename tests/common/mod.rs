@@ -37,7 +37,23 @@ pub(crate) const SCENE: &str = r#"Scene(
     ],
 )
 "#;
-/// Number of its last frame.
+/// Pinned rims, several films, warm liquid, a seeded swirl, and FLIP, which remembers the velocities of the step before.
+pub(crate) const OPEN_FILMS: &str = r#"Scene(
+    title: "Three films",
+    method: Melp(cfl: 0.5, liquid_per_carrier: 4, flip: 0.5, xsph: 0.1, gas: Adiabatic(1.4)),
+    resolution: Particles(900),
+    duration: "0.06 s",
+    frames_per_second: 100,
+    entities: [
+        [ Disc(radius: "4 cm"), Film(thickness: Noise(mean: "400 nm"), warmth: 0.2), Swirl(speed: "5 cm/s") ],
+        [ Rectangle(centre: (0.2, 0.0, 0.0), width: "8 cm", height: "8 cm"), Film(thickness: Uniform("300 nm")) ],
+        [ Sphere(centre: (-0.2, 0.0, 0.0), radius: "3 cm"), Film(thickness: Uniform("300 nm")), Drift((0.1, 0.0, 0.0)) ],
+        [ HeatSource(position: (0.0, -0.03, 0.0), radius: "2 cm") ],
+    ],
+)
+"#;
+
+/// Number of the last frame of [`SCENE`].
 pub(crate) const LAST_FRAME: u64 = 12;
 
 /// The scene as a simulation.

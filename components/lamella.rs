@@ -129,6 +129,18 @@ impl Rim {
         }
     }
 
+    /// A point of the rim's plane and its unit normal, for a flat rim.
+    #[must_use]
+    pub fn plane(&self) -> Option<(DVec3, DVec3)> {
+        match *self {
+            Self::Circle { centre, axis, .. } => Some((centre, axis)),
+            Self::Rectangle { centre, sides, .. } | Self::Hexagon { centre, sides, .. } => {
+                Some((centre, sides[0].cross(sides[1])))
+            }
+            Self::Ground { .. } => None,
+        }
+    }
+
     /// `place` moved back inside by the shortest way if it lies beyond the rim.
     #[must_use]
     pub fn confine(&self, place: DVec3) -> DVec3 {

@@ -150,6 +150,8 @@ fn numbers_on_the_command_line_are_refused_in_words() {
     let message = |arguments: &[&str]| stderr(&output(folder.path(), arguments));
     let until = message(&["run", "small.ron", "--until", "-1"]);
     assert!(until.contains("a positive time is wanted"), "{until}");
+    let long = message(&["run", "small.ron", "--until", "1e9"]);
+    assert!(long.contains("`--until` would make about 1.0e11 frames"), "{long}");
     let resolution = message(&["run", "small.ron", "--resolution", "-2"]);
     assert!(resolution.contains("a positive number is wanted"), "{resolution}");
     for (factor, code) in [("100000", "F0051"), ("0.1", "F0050")] {

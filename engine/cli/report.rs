@@ -10,7 +10,7 @@ use super::{FAILED, WRONG_USAGE};
 use crate::bench::BenchError;
 use crate::frames::PictureFramesError;
 use crate::run::RunError;
-use crate::scene::SceneError;
+use crate::scene::{MOST_FRAMES, SceneError};
 use crate::simulation::{BuildError, StepError};
 
 /// Why a command fails.
@@ -26,6 +26,10 @@ pub(super) enum Failure {
     NoSuchCode(String, String),
     #[error("there is no law `{0}`{hint}; `froth verify --list` lists them", hint = .1.map(|name| format!(", did you mean `{name}`?")).unwrap_or_default())]
     NoSuchLaw(String, Option<&'static str>),
+    #[error(
+        "`--until` would make about {frames:.1e} frames; more than {MOST_FRAMES} are refused: name an earlier time"
+    )]
+    TooManyFrames { frames: f64 },
     #[error("{0} threads cannot be started: {1}")]
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error(transparent)]
@@ -78,6 +82,7 @@ impl Failure {
         match self {
             Self::NoSuchCode(..)
             | Self::NoSuchLaw(..)
+            | Self::TooManyFrames { .. }
             | Self::Pictures(_)
             | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,

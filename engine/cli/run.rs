@@ -15,6 +15,7 @@ use crate::frames::PictureFrames;
 use crate::gallery::GALLERY;
 use crate::method::METHODS;
 use crate::run::{Manifest, Run, RunEnd, RunFolder, RunSettings, RunState};
+use crate::scene::MOST_FRAMES;
 use crate::simulation::{Overrides, Simulation};
 
 /// Folder of run folders that nobody named.
@@ -83,7 +84,8 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failure> {
         Overrides { method: arguments.method.clone(), resolution: arguments.resolution, seed: arguments.seed };
     let builder = || Simulation::builder().overrides(overrides.clone());
     // Before the particles and the folder: a picture that cannot be drawn takes no time and leaves nothing behind.
-    scene_choice::check(&arguments.scene, builder())?;
+    let (checked, _) = scene_choice::check(&arguments.scene, builder())?;
+    check_frames(arguments.until, checked.scene().header.frames_per_second.si())?;
     let mut simulation = scene_choice::build(&arguments.scene, builder())?;
     let frames = PictureFrames::of(&mut simulation)?;
     let folder = match &arguments.out {
@@ -91,6 +93,12 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failure> {
         None => RunFolder::create_numbered(Path::new(RUNS), &scene_choice::stem(&arguments.scene)),
     }?;
     drive(Run::begin(simulation, folder, settings)?, frames, arguments.process.output())
+}
+
+/// `--until` makes no more frames than a scene may.
+fn check_frames(until: Option<f64>, frames_per_second: f64) -> Result<(), Failure> {
+    let frames = until.unwrap_or(0.0) * frames_per_second;
+    if frames <= MOST_FRAMES as f64 { Ok(()) } else { Err(Failure::TooManyFrames { frames }) }
 }
 
 pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {

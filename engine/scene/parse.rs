@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer};
 use super::error::SceneError;
 use super::header::SceneHeader;
 use super::registry::AuthoredRegistry;
-use super::ron_text::{Block, Fault, options, short};
+use super::ron_text::{Block, Fault, Fields, options, short};
 use super::text::{SceneText, Tokens, quote};
 use super::{AuthoredComponent, AuthoredEntity, Scene};
 
@@ -63,9 +63,9 @@ pub(super) fn scene(file: &SceneText, registry: &AuthoredRegistry) -> Result<Sce
     if Tokens::of(text).next().is_none() {
         return Err(SceneError::Empty { name: file.name().to_owned() });
     }
-    let parsed: SceneFile<'_> = options()
-        .from_str(text)
-        .map_err(|error| Fault { file, text, range: 0..text.len(), root: "Scene", fields: &[] }.explain(error))?;
+    let parsed: SceneFile<'_> = options().from_str(text).map_err(|error| {
+        Fault { file, text, range: 0..text.len(), root: "Scene", fields: Fields::default() }.explain(error)
+    })?;
     let block = |raw: &RawValue, root| block_of(file, raw, root);
     let resolution = block(parsed.resolution, "");
     let header = SceneHeader {

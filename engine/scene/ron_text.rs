@@ -76,7 +76,7 @@ impl Block {
         let text =
             if is_identifier(self.text()) { Cow::from(format!("{}()", self.text())) } else { Cow::from(self.text()) };
         read(&text).map_err(|error| {
-            let fields = fields_of(self.name().unwrap_or_default(), &read);
+            let fields = Fields::of(self.name().unwrap_or_default(), &read);
             Fault { file: &self.file, text: &text, range: self.range(), root: self.root, fields }.explain(error)
         })
     }
@@ -115,11 +115,33 @@ impl Block {
     }
 }
 
-/// Names of the fields of what `read` reads: it is asked for one that does not exist. Empty where the value has no named fields.
-fn fields_of<T>(name: &str, read: impl Fn(&str) -> SpannedResult<T>) -> &'static [&'static str] {
-    match read(&format!("{name}(no_such_field: 0)")).err().map(|error| error.code) {
-        Some(RonError::NoSuchStructField { expected, found, .. }) if found == "no_such_field" => expected,
-        _ => &[],
+/// What is known of the named fields of a value.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fields {
+    /// All of them; none where the value has no named fields.
+    names: &'static [&'static str],
+    /// The first that has no default.
+    needed: Option<&'static str>,
+}
+
+impl Fields {
+    /// Of what `read` reads: it is asked for a field that does not exist, and for a value without fields.
+    fn of<T>(name: &str, read: impl Fn(&str) -> SpannedResult<T>) -> Self {
+        let fault = |fields: &str| read(&format!("{name}({fields})")).err().map(|error| error.code);
+        let names = match fault("no_such_field: 0") {
+            Some(RonError::NoSuchStructField { expected, found, .. }) if found == "no_such_field" => expected,
+            _ => &[],
+        };
+        let needed = match fault("") {
+            Some(RonError::MissingStructField { field, .. }) => Some(field),
+            _ => None,
+        };
+        Self { names, needed }
+    }
+
+    /// Which one to write first.
+    fn first(&self) -> Option<&'static str> {
+        self.needed.or(self.names.first().copied())
     }
 }
 
@@ -131,8 +153,8 @@ pub(super) struct Fault<'a> {
     pub(super) range: Range<usize>,
     /// What a value outside all names belongs to.
     pub(super) root: &'static str,
-    /// Fields of the whole text's value, where they are known.
-    pub(super) fields: &'static [&'static str],
+    /// Fields of the whole text's value, as far as they are known.
+    pub(super) fields: Fields,
 }
 
 impl Fault<'_> {
@@ -226,9 +248,9 @@ impl Fault<'_> {
         let found = text::value_before(self.text, found.end).unwrap_or(found);
         let owner = self.owner(found.start + 1);
         let is_outermost = Surroundings::at(self.text, found.start).depth() == 1;
-        let help = match (is_outermost, self.fields) {
-            (true, [first, ..]) => format!("write `{owner}({first}: ...)`; fields: {}", self.fields.join(", ")),
-            _ => "write `name: value`".to_owned(),
+        let help = match self.fields.first().filter(|_| is_outermost) {
+            Some(first) => format!("write `{owner}({first}: ...)`; fields: {}", self.fields.names.join(", ")),
+            None => "write `name: value`".to_owned(),
         };
         SceneError::WrongType {
             message: format!("`{}` stands where a named field is wanted", quote(&self.text[found.clone()])),

@@ -105,7 +105,75 @@ fn an_error_in_a_scene_has_a_place_and_a_code() {
     fs::write(folder.path().join("broken.ron"), common::SCENE.replace("radius", "radus")).unwrap();
     let message = stderr(&output(folder.path(), &["check", "broken.ron"]));
     assert!(message.starts_with("broken.ron:11:20: error[F00"), "{message}");
-    assert!(message.contains("\n  help: "), "{message}");
+    // Without a terminal the piece of the scene is shown too, without colours.
+    assert!(message.contains("[broken.ron:11:20]") && message.contains("Sphere(radus: \"5 cm\")"), "{message}");
+    assert!(message.contains("\n  help: ") && message.contains('┬') && !message.contains('\x1b'), "{message}");
+}
+
+#[test]
+fn a_picture_that_cannot_be_drawn_is_found_before_the_run() {
+    let folder = folder();
+    let faults = [
+        ("(look: Map(quantity: \"thicknes\"))", "8:35: error[F0022]", "did you mean `thickness`?"),
+        ("(width: 100000)", "8:22: error[F0034]", "1 to 16384 pixels"),
+        ("(width: 16384, height: 16384)", "8:14: error[F0034]", "at most 134217728"),
+        ("(camera: (position: (0, 0, 0), target: (0, 0, 0)))", "8:23: error[F0034]", "the camera has no direction"),
+        ("(view: 1)", "8:15: error[F0021]: `picture` has no field `view`", "fields: width, height"),
+        ("(look: Map(quantity: 5))", "8:35: error[F0030]: `picture.look.quantity`", "a text in quotes"),
+    ];
+    for (picture, place, advice) in faults {
+        fs::write(folder.path().join("drawn.ron"), common::SCENE.replace("(width: 96, height: 96)", picture)).unwrap();
+        for command in ["check", "run"] {
+            let output = output(folder.path(), &[command, "drawn.ron"]);
+            let message = stderr(&output);
+            assert_eq!(exit_code(&output), 2, "{command} {picture}: {message}");
+            assert!(message.starts_with(&format!("drawn.ron:{place}")) && message.contains(advice), "{message}");
+        }
+    }
+    assert!(!folder.path().join("runs").exists());
+}
+
+#[test]
+fn a_quantity_of_liquid_is_none_without_liquid() {
+    let folder = folder();
+    let map = common::SCENE.replace("(width: 96, height: 96)", "(look: Map(quantity: \"velocity gradient\"))");
+    fs::write(folder.path().join("wet.ron"), &map).unwrap();
+    fs::write(folder.path().join("dry.ron"), map.replace("liquid_per_carrier: 4", "liquid_per_carrier: 0")).unwrap();
+    assert_eq!(exit_code(&output(folder.path(), &["check", "wet.ron"])), 0);
+    let dry = output(folder.path(), &["check", "dry.ron"]);
+    assert!(exit_code(&dry) == 2 && stderr(&dry).contains("error[F0022]"), "{}", stderr(&dry));
+}
+
+#[test]
+fn numbers_on_the_command_line_are_refused_in_words() {
+    let folder = folder();
+    let message = |arguments: &[&str]| stderr(&output(folder.path(), arguments));
+    let until = message(&["run", "small.ron", "--until", "-1"]);
+    assert!(until.contains("a positive time is wanted"), "{until}");
+    let long = message(&["run", "small.ron", "--until", "1e9"]);
+    assert!(long.contains("`--until` would make about 1.0e11 frames"), "{long}");
+    let resolution = message(&["run", "small.ron", "--resolution", "-2"]);
+    assert!(resolution.contains("a positive number is wanted"), "{resolution}");
+    for (factor, code) in [("100000", "F0051"), ("0.1", "F0050")] {
+        let message = message(&["run", "small.ron", "--resolution", factor]);
+        assert!(message.contains(code) && message.contains(&format!("`--resolution {factor}` makes")), "{message}");
+    }
+}
+
+#[test]
+fn a_slip_in_a_command_or_a_code_is_mended() {
+    let folder = folder();
+    let said = |arguments: &[&str], wanted: &str| {
+        let output = output(folder.path(), arguments);
+        assert_eq!(exit_code(&output), 2);
+        assert!(stderr(&output).contains(wanted), "{}", stderr(&output));
+    };
+    said(&["rnu", "small.ron"], "did you mean `froth run`?");
+    said(&["small.ron"], "did you mean `froth run small.ron`?");
+    said(&["giant_buble"], "did you mean `froth run giant_bubble`?");
+    said(&["frobnicate"], "commands: run, resume, check");
+    said(&["explain", "F0049"], "there are: F0040, F0041");
+    said(&["explain", "F9999"], "F0001, F0002");
 }
 
 #[test]
@@ -123,6 +191,9 @@ fn check_says_what_would_be_built() {
     let text = stdout(&output);
     assert!(text.contains("600 eulerian, 2400 lagrangian, 0 boundary"), "{text}");
     assert!(text.contains("13 frames at 100 per second") && text.contains("memory"), "{text}");
+    assert!(text.contains("12 or more, none longer than 10.000 ms, each of up to 8 substeps"), "{text}");
+    assert!(text.contains("96 x 96 pixels; at most 1 MB on disk"), "{text}");
+    assert!(text.contains("if films flow at 1.40 m/s"), "{text}");
 }
 
 #[test]

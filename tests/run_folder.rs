@@ -4,18 +4,20 @@ mod common;
 
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use bevy_ecs::world::World;
 use common::{
     StopAfter, assert_same_results, draw, exit_code, files, froth, output, results, scene_file, signal, simulation,
     stderr,
 };
 use froth::Simulation;
 use froth::checkpoint::CheckpointError;
-use froth::run::{Manifest, NoFrames, Run, RunError, RunFolder, RunSettings, RunState, Silent};
+use froth::run::{FrameError, Manifest, NoFrames, Run, RunError, RunFolder, RunSettings, RunState, Silent};
 use froth::simulation::BuildError;
+use froth_systems::stage::Stage;
 use tempfile::TempDir;
 
 /// A run that stopped after a step, with a checkpoint after each of the last two.
@@ -200,4 +202,58 @@ fn a_folder_that_cannot_be_made_is_named() {
     let output = output(parent.path(), &["run", "small.ron", "--out", "small.ron/run"]);
     assert_eq!(exit_code(&output), 1);
     assert!(stderr(&output).starts_with("error: the run folder `small.ron/run` cannot be made"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_folder_without_permission_to_write_is_named() {
+    let parent = tempfile::tempdir().unwrap();
+    scene_file(parent.path());
+    let locked = parent.path().join("locked");
+    fs::create_dir(&locked).unwrap();
+    fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
+    if fs::write(locked.join("probe"), b"").is_ok() {
+        // Nothing is locked for root.
+        return;
+    }
+    let output = output(parent.path(), &["run", "small.ron", "--out", "locked/run"]);
+    assert_eq!(exit_code(&output), 1);
+    let message = stderr(&output);
+    assert!(message.starts_with("error: the run folder `locked/run` cannot be made: Permission denied"), "{message}");
+}
+
+#[test]
+fn a_run_that_fails_early_has_a_checkpoint() {
+    let parent = tempfile::tempdir().unwrap();
+    let path = parent.path().join("early");
+    let hour = std::time::Duration::from_secs(3600);
+    let settings = RunSettings { autosave: hour, first_autosave: std::time::Duration::ZERO, ..RunSettings::default() };
+    let mut broken = |world: &mut World, frame: u64, folder: &RunFolder| -> Result<(), FrameError> {
+        if frame == 3 { Err("the pen broke".into()) } else { draw(world, frame, folder) }
+    };
+    let mut run = Run::begin(simulation(), RunFolder::create(&path).unwrap(), settings).unwrap();
+    run.drive(&mut broken, &mut Silent).unwrap_err();
+    // After the first step, and none after the others.
+    assert_eq!(checkpoints(&path).len(), 1);
+    drop(run);
+    assert_eq!(resume(&path).unwrap().simulation().clock().steps, 1);
+}
+
+#[test]
+fn wall_times_have_a_line_per_step_also_in_a_resumed_run() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = stopped(&parent, "timed");
+    resume(&folder).unwrap().drive(&mut draw, &mut Silent).unwrap();
+    let read = |file: &str| -> Vec<Vec<String>> {
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    };
+    let (times, observables) = (read("timings.csv"), read("observables.csv"));
+    let steps = |table: &[Vec<String>]| table.iter().map(|line| line[..2].to_vec()).collect::<Vec<_>>();
+    assert_eq!(steps(&times), steps(&observables));
+    assert_eq!(times[0][..4], ["step", "time [s]", "substeps [1]", "Clock [ms]"]);
+    assert_eq!(times[0].len(), 3 + Stage::ALL.len());
+    for line in &times[1..] {
+        let numbers: Vec<f64> = line.iter().map(|number| number.parse().unwrap()).collect();
+        assert!(numbers.len() == times[0].len() && numbers[3..].iter().sum::<f64>() > 0.0, "{line:?}");
+    }
 }

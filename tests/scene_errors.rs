@@ -119,6 +119,14 @@ faults! {
     bumps_without_a_shape: broken("[ Hover() ]", "[ Bumps() ]");
     a_harmonic_on_a_rectangle: broken("Sphere(radius: \"10 cm\")", "Rectangle(width: 1, height: 1)").replace("Bumps(", "HarmonicMode(degree: 2, ");
     a_film_of_two_shapes: broken("Bumps(amplitude: 0.06)", "Disc(radius: \"5 cm\")");
+    a_swirl_without_liquid: broken("cfl: 0.99", "liquid_per_carrier: 0").replace("Bumps(amplitude: 0.06)", "Swirl(speed: 0.05)");
+    heat_without_liquid: broken("cfl: 0.99", "liquid_per_carrier: 0").replace("Hover()", "HeatSource(position: (0, 0, 0), radius: 1)");
+    a_duration_of_thirty_years: broken("2 s", "1e9 s").replace("frames_per_second: 50,", "");
+    a_trillion_frames: broken("frames_per_second: 50", "frames_per_second: 1e12");
+    an_ellipsoid_as_thin_as_a_wafer: broken("Sphere(radius: \"10 cm\")", "Ellipsoid(radii: (\"5 cm\", \"5 cm\", \"1 mm\"))");
+    a_number_for_named_fields: broken("Hover()", "Spin(5)");
+    a_vector_for_named_fields: broken("Hover()", "Spin((0.0, 5.0, 0.0))");
+    a_number_for_a_thickness_field: broken("Noise(mean: \"425 nm\", relative: 0.15, frequency: 5)", "425");
     a_resolution_too_coarse: broken("Particles(4000)", "Spacing(\"5 cm\")");
     a_trillion_particles: broken("4000", "1000000000000");
     a_trillion_particles_as_a_float: broken("4000", "1e12");

@@ -6,7 +6,7 @@ use froth_systems::stage::{Part, Stage};
 
 use super::report::Failure;
 use super::{DONE, say, scene_choice};
-use crate::errors::error_page;
+use crate::errors::{PAGES, error_page};
 use crate::scene::{AuthoredRegistry, Scene};
 use crate::simulation::Simulation;
 
@@ -23,7 +23,7 @@ pub(super) struct ExplainArguments {
 pub(super) fn explain(arguments: &ExplainArguments) -> Result<u8, Failure> {
     let what = &arguments.what;
     if is_code(what) {
-        say(error_page(what).ok_or_else(|| Failure::NoSuchCode(what.clone()))?);
+        say(error_page(what).ok_or_else(|| no_such_code(what))?);
         return Ok(DONE);
     }
     let scene = scene_choice::read(what, &AuthoredRegistry::built_in())?;
@@ -31,6 +31,15 @@ pub(super) fn explain(arguments: &ExplainArguments) -> Result<u8, Failure> {
     say(format!("{}: {}", scene.header.title, simulation.method().summary));
     say(schedule(&simulation.explain()));
     Ok(DONE)
+}
+
+/// The codes of the same tens, or of all where there are none.
+fn no_such_code(what: &str) -> Failure {
+    let group = what.get(..4).unwrap_or_default().to_uppercase();
+    let codes = || PAGES.iter().map(|(code, _)| *code);
+    let near: Vec<&str> = codes().filter(|code| code.starts_with(&group)).collect();
+    let listed = if near.is_empty() { codes().collect() } else { near };
+    Failure::NoSuchCode(what.to_owned(), listed.join(", "))
 }
 
 fn is_code(what: &str) -> bool {

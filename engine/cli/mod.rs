@@ -7,7 +7,7 @@
 //! | `check` | `check` |
 //! | `explain` | `explain` |
 //! | `verify` | `verify` |
-//! | `scenes` | `gallery` |
+//! | `scenes` | `scenes` |
 //!
 //! Errors are shown by `report`. Progress goes to standard error, results to standard output.
 
@@ -16,21 +16,25 @@
 mod bench;
 mod check;
 mod explain;
-mod gallery;
 mod progress;
 mod report;
 mod run;
 mod scene_choice;
+mod scenes;
 mod signals;
 mod verify;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser, Subcommand};
+use froth_components::quantity::nearest;
 
 use self::report::{Failure, show};
+use crate::gallery;
 
 /// The work is done.
 const DONE: u8 = 0;
@@ -81,6 +85,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) => {
             // Help and version are no errors to clap's printer either; it chooses the stream.
             let _ = error.print();
+            if let Some(hint) = hint(&error) {
+                eprintln!("\n{hint}");
+            }
             return ExitCode::from(if error.use_stderr() { WRONG_USAGE } else { DONE });
         }
     };
@@ -92,12 +99,26 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Explain(arguments)) => explain::explain(&arguments),
         Some(Command::Verify(arguments)) => verify::verify(&arguments),
         Some(Command::Bench(arguments)) => bench::bench(&arguments),
-        Some(Command::Scenes) => Ok(gallery::list()),
+        Some(Command::Scenes) => Ok(scenes::list()),
     };
     ExitCode::from(done.unwrap_or_else(|failure: Failure| {
         show(&failure);
         failure.exit_code()
     }))
+}
+
+/// What may have been meant by a command that does not exist: another command, or a scene without `run`.
+fn hint(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let commands: Vec<String> = Arguments::command().get_subcommands().map(|one| one.get_name().to_owned()).collect();
+    let is_scene = gallery::built_in(found).is_some() || Path::new(found).is_file();
+    let near = nearest(found, commands.iter().map(String::as_str)).map(str::to_owned);
+    let near = if is_scene { Some(format!("run {found}")) } else { near };
+    let near = near.or_else(|| gallery::nearest_name(found).map(|name| format!("run {name}")));
+    Some(match near {
+        Some(near) => format!("did you mean `froth {near}`?"),
+        None => format!("commands: {}", commands.join(", ")),
+    })
 }
 
 /// Prints a line to standard output. A reader that went away (`froth scenes | head -1`) is no error.

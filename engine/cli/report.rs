@@ -1,16 +1,16 @@
-//! What went wrong, on standard error: with the piece of the scene and a caret on a terminal, in one line otherwise.
+//! What went wrong, on standard error: with the piece of the scene and a caret, in colours on a terminal.
 
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
-use miette::{Diagnostic, GraphicalReportHandler};
+use miette::{GraphicalReportHandler, GraphicalTheme};
 use thiserror::Error;
 
 use super::{FAILED, WRONG_USAGE};
 use crate::bench::BenchError;
 use crate::frames::PictureFramesError;
 use crate::run::RunError;
-use crate::scene::SceneError;
+use crate::scene::{MOST_FRAMES, SceneError};
 use crate::simulation::{BuildError, StepError};
 
 /// Why a command fails.
@@ -22,10 +22,14 @@ pub(super) enum Failure {
     Run(#[from] RunError),
     #[error(transparent)]
     Pictures(PictureFramesError),
-    #[error("there is no error code `{0}`; codes look like F0020")]
-    NoSuchCode(String),
+    #[error("there is no error code `{0}`; there are: {1}")]
+    NoSuchCode(String, String),
     #[error("there is no law `{0}`{hint}; `froth verify --list` lists them", hint = .1.map(|name| format!(", did you mean `{name}`?")).unwrap_or_default())]
     NoSuchLaw(String, Option<&'static str>),
+    #[error(
+        "`--until` would make about {frames:.1e} frames; more than {MOST_FRAMES} are refused: name an earlier time"
+    )]
+    TooManyFrames { frames: f64 },
     #[error("{0} threads cannot be started: {1}")]
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error(transparent)]
@@ -76,8 +80,9 @@ impl Failure {
             None => {}
         }
         match self {
-            Self::NoSuchCode(_)
+            Self::NoSuchCode(..)
             | Self::NoSuchLaw(..)
+            | Self::TooManyFrames { .. }
             | Self::Pictures(_)
             | Self::Run(RunError::Occupied { .. } | RunError::NotARun { .. }) => WRONG_USAGE,
             _ => FAILED,
@@ -88,25 +93,29 @@ impl Failure {
 /// Shows a failure.
 pub(super) fn show(failure: &Failure) {
     match failure.build_error() {
-        Some(BuildError::Scene(error)) if io::stderr().is_terminal() => eprint!("{}", drawn(error)),
-        Some(BuildError::Scene(error)) => eprintln!("{}", in_lines(error)),
+        Some(BuildError::Scene(error)) => eprint!("{}", drawn(error, io::stderr().is_terminal())),
         _ => eprintln!("error: {failure}"),
     }
 }
 
-/// With the piece of the scene.
-fn drawn(error: &SceneError) -> String {
-    let mut text = String::new();
-    match GraphicalReportHandler::new().render_report(&mut text, error) {
-        Ok(()) => text,
-        Err(_) => in_lines(error),
+/// Message, piece of the scene, and help. Without a terminal the place and the code come first, in one line that programs find.
+fn drawn(error: &SceneError, on_terminal: bool) -> String {
+    let theme = if on_terminal { GraphicalTheme::default() } else { GraphicalTheme::unicode_nocolor() };
+    let mut handler = GraphicalReportHandler::new_themed(theme);
+    if !on_terminal {
+        handler = handler.with_width(PLAIN_WIDTH).with_links(false);
     }
+    let mut drawn = String::new();
+    if handler.render_report(&mut drawn, error).is_ok() && on_terminal {
+        return drawn;
+    }
+    let place = error.place().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
+    let message = format!("{}error[{}]: {error}", place.unwrap_or_default(), error.stable_code());
+    // Code and message stand in the first line already.
+    let is_more = |line: &str| ["╭", "├", "╰", "help:"].iter().any(|start| line.trim_start().starts_with(start));
+    let more = drawn.lines().skip_while(|line| !is_more(line));
+    [message.as_str()].into_iter().chain(more).fold(String::new(), |text, line| text + line + "\n")
 }
 
-/// `file:line:column: error[F0020]: message`, and the help.
-fn in_lines(error: &SceneError) -> String {
-    let place = error.place().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
-    let help = error.help().map(|help| format!("\n  help: {help}"));
-    let (place, help) = (place.unwrap_or_default(), help.unwrap_or_default());
-    format!("{place}error[{}]: {error}{help}", error.stable_code())
-}
+/// Columns where there is no terminal.
+const PLAIN_WIDTH: usize = 120;

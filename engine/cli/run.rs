@@ -15,6 +15,7 @@ use crate::frames::PictureFrames;
 use crate::gallery::GALLERY;
 use crate::method::METHODS;
 use crate::run::{Manifest, Run, RunEnd, RunFolder, RunSettings, RunState};
+use crate::scene::MOST_FRAMES;
 use crate::simulation::{Overrides, Simulation};
 
 /// Folder of run folders that nobody named.
@@ -28,13 +29,13 @@ pub(super) struct RunArguments {
     #[arg(long, value_parser = PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))]
     method: Option<String>,
     /// Factor on the resolution: 2 halves the spacing, which makes four times the particles
-    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
     resolution: Option<f64>,
     /// End at this simulated time, such as `0.5` (seconds) or `"20 ms"`
-    #[arg(long, value_name = "TIME", value_parser = seconds)]
+    #[arg(long, value_name = "TIME", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Replace the scene's seed
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Write the run here instead of runs/<scene>-<n>; the folder must be empty or absent
     #[arg(long, value_name = "DIR")]
@@ -57,8 +58,8 @@ struct ProcessArguments {
     /// Threads; all cores by default
     #[arg(long)]
     threads: Option<NonZeroUsize>,
-    /// Minutes of wall time between checkpoints
-    #[arg(long, value_name = "MINUTES", default_value = "5", value_parser = positive)]
+    /// Minutes of wall time between checkpoints; the first is made after half a minute at most
+    #[arg(long, value_name = "MINUTES", default_value = "5", value_parser = positive, allow_negative_numbers = true)]
     autosave: f64,
     /// Print nothing but errors
     #[arg(long, conflicts_with = "json")]
@@ -81,14 +82,23 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failure> {
     let settings = arguments.process.begin(arguments.until)?;
     let overrides =
         Overrides { method: arguments.method.clone(), resolution: arguments.resolution, seed: arguments.seed };
-    let mut simulation = scene_choice::build(&arguments.scene, Simulation::builder().overrides(overrides))?;
-    // Before the folder: a picture that cannot be drawn leaves nothing behind.
+    let builder = || Simulation::builder().overrides(overrides.clone());
+    // Before the particles and the folder: a picture that cannot be drawn takes no time and leaves nothing behind.
+    let (checked, _) = scene_choice::check(&arguments.scene, builder())?;
+    check_frames(arguments.until, checked.scene().header.frames_per_second.si())?;
+    let mut simulation = scene_choice::build(&arguments.scene, builder())?;
     let frames = PictureFrames::of(&mut simulation)?;
     let folder = match &arguments.out {
         Some(path) => RunFolder::create(path),
         None => RunFolder::create_numbered(Path::new(RUNS), &scene_choice::stem(&arguments.scene)),
     }?;
     drive(Run::begin(simulation, folder, settings)?, frames, arguments.process.output())
+}
+
+/// `--until` makes no more frames than a scene may.
+fn check_frames(until: Option<f64>, frames_per_second: f64) -> Result<(), Failure> {
+    let frames = until.unwrap_or(0.0) * frames_per_second;
+    if frames <= MOST_FRAMES as f64 { Ok(()) } else { Err(Failure::TooManyFrames { frames }) }
 }
 
 pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
@@ -123,7 +133,8 @@ impl ProcessArguments {
     fn begin(&self, until: Option<f64>) -> Result<RunSettings, Failure> {
         start_threads(self.threads)?;
         let stop = signals::stop_flag().map_err(Failure::Signals)?;
-        Ok(RunSettings { until, autosave: Duration::from_secs_f64(60.0 * self.autosave), stop })
+        let autosave = Duration::try_from_secs_f64(60.0 * self.autosave).unwrap_or(Duration::MAX);
+        Ok(RunSettings { until, autosave, stop, ..RunSettings::default() })
     }
 
     fn output(&self) -> Output {

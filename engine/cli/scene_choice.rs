@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::report::Failure;
-use crate::gallery;
+use crate::picture::PictureSettings;
 use crate::scene::{AuthoredRegistry, Scene, SceneError};
 use crate::simulation::{Simulation, SimulationBuilder};
+use crate::{frames, gallery};
 
 /// Reads the scene that `argument` means.
 pub(super) fn read(argument: &str, registry: &AuthoredRegistry) -> Result<Scene, Failure> {
@@ -20,6 +21,15 @@ pub(super) fn build(argument: &str, builder: SimulationBuilder) -> Result<Simula
     // Read first, for the better error.
     let scene = read(argument, &AuthoredRegistry::built_in())?;
     Ok(builder.build_from_text(scene.source().name(), scene.source().text())?)
+}
+
+/// Checks the scene that `argument` means, with its pictures; gives the simulation without particles, and how pictures are drawn.
+pub(super) fn check(argument: &str, builder: SimulationBuilder) -> Result<(Simulation, PictureSettings), Failure> {
+    // Read first, for the better error.
+    let scene = read(argument, &AuthoredRegistry::built_in())?;
+    let simulation = builder.build_without_particles(scene.source().name(), scene.source().text())?;
+    let pictures = frames::check(&simulation)?;
+    Ok((simulation, pictures))
 }
 
 /// What run folders of the scene are called.

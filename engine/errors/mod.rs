@@ -15,8 +15,8 @@ pages! {
     "F0010" "F0011"
     "F0020" "F0021" "F0022" "F0023" "F0024" "F0025" "F0026" "F0027"
     "F0030" "F0031" "F0032" "F0033" "F0034" "F0035" "F0036"
-    "F0040" "F0041" "F0042" "F0043"
-    "F0050" "F0051"
+    "F0040" "F0041" "F0042" "F0043" "F0044"
+    "F0050" "F0051" "F0052" "F0053"
 }
 
 /// The page of an error code such as `F0020`, in Markdown. Upper and lower case are the same.

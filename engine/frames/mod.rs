@@ -53,6 +53,43 @@ pub enum PictureFramesError {
     Quantity(#[from] QuantityError),
 }
 
+/// The picture settings of a scene; their faults point into the file.
+fn settings(scene: &Scene) -> Result<PictureSettings, SceneError> {
+    let Some(block) = scene.picture() else { return Ok(PictureSettings::default()) };
+    let settings: PictureSettings = block.read()?;
+    match settings.check_fields() {
+        Ok(()) => Ok(settings),
+        Err((field, PictureError::OutOfRange { name, value, allowed })) => {
+            Err(block.out_of_range(field, format!("{name} is {value}"), format!("it must be {allowed}")))
+        }
+        Err((field, error)) => {
+            let help = "leave the field out to have the films framed".to_owned();
+            Err(block.out_of_range(field, error.to_string(), help))
+        }
+    }
+}
+
+fn in_scene(scene: &Scene, error: QuantityError) -> PictureFramesError {
+    match scene.picture() {
+        Some(block) => {
+            let QuantityError { wanted, nearest, known } = &error;
+            Box::new(block.no_choice("quantity", wanted, nearest.as_deref(), known)).into()
+        }
+        None => error.into(),
+    }
+}
+
+/// Checks the pictures of a simulation that has no particles yet, and gives their settings.
+///
+/// # Errors
+/// As [`PictureFrames::of`] gives them.
+pub fn check(simulation: &Simulation) -> Result<PictureSettings, PictureFramesError> {
+    let scene = simulation.scene();
+    let settings = settings(scene).map_err(Box::new)?;
+    Quantity::check(&settings.look, simulation.world(), scene.has_liquid()).map_err(|error| in_scene(scene, error))?;
+    Ok(settings)
+}
+
 /// Draws every frame as `frames/000123.png`, and at the end all of them as an animated PNG.
 pub struct PictureFrames {
     painter: Painter,
@@ -67,14 +104,12 @@ impl PictureFrames {
     /// When the settings cannot be read, make no picture, or name a quantity that no particle has.
     pub fn of(simulation: &mut Simulation) -> Result<Self, PictureFramesError> {
         let scene = simulation.scene();
-        let mut settings: PictureSettings = match scene.picture() {
-            Some(block) => block.read().map_err(Box::new)?,
-            None => PictureSettings::default(),
-        };
+        let mut settings = settings(scene).map_err(Box::new)?;
         let aspect = f64::from(settings.width) / f64::from(settings.height);
         settings.camera = settings.camera.or_else(|| framing(scene, aspect));
         let frames_per_second = scene.header.frames_per_second.si();
-        let quantity = Quantity::of(&settings.look, simulation.world_mut())?;
+        let quantity = Quantity::of(&settings.look, simulation.world_mut());
+        let quantity = quantity.map_err(|error| in_scene(simulation.scene(), error))?;
         Ok(Self { painter: Painter::new(settings)?, quantity, frames_per_second })
     }
 

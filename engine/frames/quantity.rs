@@ -25,6 +25,30 @@ fn hint(nearest: Option<&str>) -> String {
     nearest.map(|name| format!(" (did you mean `{name}`?)")).unwrap_or_default()
 }
 
+impl QuantityError {
+    fn of(wanted: String, candidates: &[ColumnEntry]) -> Self {
+        let mut known: Vec<&'static str> = candidates.iter().map(|entry| entry.name).collect();
+        known.sort_unstable();
+        known.dedup();
+        let nearest = nearest(&wanted, known.iter().copied()).map(str::to_owned);
+        Self { wanted, nearest, known }
+    }
+}
+
+/// Name of the column that a look shows.
+fn wanted(look: &Look) -> String {
+    match look {
+        Look::Interference { .. } => Thickness::NAME.to_owned(),
+        Look::Map { quantity, .. } => quantity.trim().replace(' ', "_"),
+    }
+}
+
+/// Columns of some kinds of particle, kind after kind.
+fn candidates(world: &World, kinds: &[&'static str]) -> Vec<ColumnEntry> {
+    let registry = world.resource::<ColumnRegistry>();
+    kinds.iter().flat_map(|kind| registry.of_kind(kind)).collect()
+}
+
 /// A column to draw.
 #[derive(Clone, Copy)]
 pub(super) struct Quantity {
@@ -36,23 +60,25 @@ pub(super) struct Quantity {
 impl Quantity {
     /// The quantity that a look shows.
     pub(super) fn of(look: &Look, world: &mut World) -> Result<Self, QuantityError> {
-        let wanted = match look {
-            Look::Interference { .. } => Thickness::NAME.to_owned(),
-            Look::Map { quantity, .. } => quantity.trim().replace(' ', "_"),
-        };
-        let registry = world.resource::<ColumnRegistry>();
         // Material particles first: they show the finest detail.
-        let drawn = [LagrangianParticle::NAME, EulerianParticle::NAME];
-        let candidates: Vec<ColumnEntry> = drawn.iter().flat_map(|kind| registry.of_kind(kind)).collect();
+        let candidates = candidates(world, &[LagrangianParticle::NAME, EulerianParticle::NAME]);
+        let wanted = wanted(look);
         let populated = |entry: &&ColumnEntry| entry.name == wanted && !entry.save(world).is_empty();
-        if let Some(column) = candidates.iter().find(populated) {
-            return Ok(Self { kind: column.kind, column: *column });
+        match candidates.iter().find(populated) {
+            Some(column) => Ok(Self { kind: column.kind, column: *column }),
+            None => Err(QuantityError::of(wanted, &candidates)),
         }
-        let mut known: Vec<&'static str> = candidates.iter().map(|entry| entry.name).collect();
-        known.sort_unstable();
-        known.dedup();
-        let nearest = nearest(&wanted, known.iter().copied()).map(str::to_owned);
-        Err(QuantityError { wanted, nearest, known })
+    }
+
+    /// Whether the particles that are to come will have the quantity that a look shows.
+    pub(super) fn check(look: &Look, world: &World, has_liquid: bool) -> Result<(), QuantityError> {
+        let kinds = [EulerianParticle::NAME, LagrangianParticle::NAME];
+        let candidates = candidates(world, if has_liquid { &kinds } else { &kinds[..1] });
+        let wanted = wanted(look);
+        match candidates.iter().any(|entry| entry.name == wanted) {
+            true => Ok(()),
+            false => Err(QuantityError::of(wanted, &candidates)),
+        }
     }
 
     /// The values, one per particle; of a vector or matrix its length.

@@ -9,6 +9,10 @@ use serde::Deserialize;
 
 /// Largest edge of a picture, pixels.
 const LARGEST_EDGE: u32 = 16_384;
+/// Most samples of a picture: 4K at 4 samples per pixel edge.
+const MOST_SAMPLES: f64 = 134_217_728.0;
+/// Memory of one pixel while its picture is drawn and coded, bytes: tiles, picture, PNG, animation.
+const BYTES_PER_PIXEL: u64 = 12;
 
 /// Choices for a picture.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -95,39 +99,71 @@ fn gentle_relief() -> f64 {
 }
 
 impl PictureSettings {
-    /// Refuses sizes and factors that make no picture.
+    /// Refuses sizes, factors and cameras that make no picture.
     ///
     /// # Errors
-    /// [`PictureError::OutOfRange`] that names the setting.
+    /// [`PictureError::OutOfRange`] that names the setting, or [`PictureError::CameraWithoutDirection`].
     pub fn check(&self) -> Result<(), PictureError> {
+        self.check_fields().map_err(|(_, error)| error)
+    }
+
+    /// The same; the error comes with the field at fault, empty where it is several.
+    pub(crate) fn check_fields(&self) -> Result<(), FieldError> {
         let edge = 1.0..=f64::from(LARGEST_EDGE);
-        within("the picture's width", f64::from(self.width), &edge, "1 to 16384 pixels")?;
-        within("the picture's height", f64::from(self.height), &edge, "1 to 16384 pixels")?;
-        within("the number of samples", f64::from(self.samples), &(1.0..=4.0), "1 to 4 per pixel edge")?;
-        within("the exposure", self.exposure, &(1e-6..=1e6), "a factor from 1e-6 to 1e6")?;
+        let (width, height, samples) = (f64::from(self.width), f64::from(self.height), f64::from(self.samples));
+        within("width", "the picture's width", width, &edge, "1 to 16384 pixels")?;
+        within("height", "the picture's height", height, &edge, "1 to 16384 pixels")?;
+        within("samples", "the number of samples", samples, &(1.0..=4.0), "1 to 4 per pixel edge")?;
+        let (all, allowed) = (width * height * samples * samples, "at most 134217728, as 3840 x 2160 x 4^2 are");
+        within("", "width x height x samples^2", all, &(1.0..=MOST_SAMPLES), allowed)?;
+        within("exposure", "the exposure", self.exposure, &(1e-6..=1e6), "a factor from 1e-6 to 1e6")?;
+        self.check_camera()?;
+        self.check_look()
+    }
+
+    fn check_camera(&self) -> Result<(), FieldError> {
+        let view = self.camera.map(|camera| camera.view(f64::from(self.width), f64::from(self.height)));
+        match view {
+            Some(Err(error @ PictureError::OutOfRange { .. })) => Err(("field_of_view", error)),
+            Some(Err(error)) => Err(("camera", error)),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_look(&self) -> Result<(), FieldError> {
         match &self.look {
             Look::Interference { refractive_index } => {
-                within("the refractive index", *refractive_index, &(1.0..=4.0), "1 to 4")
+                within("refractive_index", "the refractive index", *refractive_index, &(1.0..=4.0), "1 to 4")
             }
             Look::Map { unit_size, range, relief, .. } => {
-                within("the size of the unit", *unit_size, &(f64::MIN_POSITIVE..=f64::MAX), "positive")?;
-                within("the relief", *relief, &(0.0..=1.0), "0 to 1")?;
+                let positive = f64::MIN_POSITIVE..=f64::MAX;
+                within("unit_size", "the size of the unit", *unit_size, &positive, "positive")?;
+                within("relief", "the relief", *relief, &(0.0..=1.0), "0 to 1")?;
                 range.map_or(Ok(()), |(low, high)| {
-                    let span = high - low;
-                    within("the span of the map's range", span, &(f64::MIN_POSITIVE..=f64::MAX), "positive and finite")
+                    within("range", "the span of the map's range", high - low, &positive, "positive and finite")
                 })
             }
         }
     }
+
+    /// Memory that drawing takes, bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        BYTES_PER_PIXEL * u64::from(self.width) * u64::from(self.height)
+    }
 }
 
+/// The field at fault, and what is wrong with it.
+pub(crate) type FieldError = (&'static str, PictureError);
+
 fn within(
+    field: &'static str,
     name: &'static str,
     value: f64,
     range: &std::ops::RangeInclusive<f64>,
     allowed: &'static str,
-) -> Result<(), PictureError> {
-    if range.contains(&value) { Ok(()) } else { Err(PictureError::OutOfRange { name, value, allowed }) }
+) -> Result<(), FieldError> {
+    if range.contains(&value) { Ok(()) } else { Err((field, PictureError::OutOfRange { name, value, allowed })) }
 }
 
 #[cfg(test)]
@@ -153,9 +189,14 @@ mod tests {
 
     #[test]
     fn numbers_that_make_no_picture_are_refused() {
-        for settings in
-            ["(width: 0)", "(samples: 9)", "(exposure: -1.0)", "(look: Interference(refractive_index: 0.5))"]
-        {
+        for settings in [
+            "(width: 0)",
+            "(samples: 9)",
+            "(width: 16384, height: 16384)",
+            "(exposure: -1.0)",
+            "(look: Interference(refractive_index: 0.5))",
+            "(camera: Some((position: (0, 0, 0), target: (0, 0, 0))))",
+        ] {
             assert!(ron::from_str::<PictureSettings>(settings).unwrap().check().is_err(), "{settings}");
         }
     }

@@ -3,6 +3,7 @@
 //! ```text
 //! manifest.json     what ran, how, and how it ended          observables.csv   one line per step
 //! scene.ron         copy of the scene                        run.log           what happened, with wall times
+//! timings.csv       wall time per stage and step, ms
 //! frames/000000.png ...                                      checkpoints/step-00000120-at-1.200000s.ckpt
 //! ```
 
@@ -18,6 +19,7 @@ use crate::whole_file::write_whole;
 pub(super) const MANIFEST: &str = "manifest.json";
 pub(super) const SCENE: &str = "scene.ron";
 pub(super) const OBSERVABLES: &str = "observables.csv";
+pub(super) const TIMINGS: &str = "timings.csv";
 const LOG: &str = "run.log";
 const CHECKPOINTS: &str = "checkpoints";
 const FRAMES: &str = "frames";

@@ -20,6 +20,7 @@ mod frame_sink;
 mod manifest;
 mod reporter;
 mod table;
+mod timings;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,9 +34,10 @@ pub use frame_sink::{FrameSink, NoFrames};
 pub use manifest::{Machine, Manifest, RunState};
 pub use reporter::{Progress, Reporter, Silent};
 
-use self::folder::{OBSERVABLES, SCENE};
+use self::folder::{OBSERVABLES, SCENE, TIMINGS};
 use self::reporter::Progression;
 use self::table::ObservablesTable;
+use self::timings::TimingsTable;
 use crate::checkpoint::{self, CheckpointError};
 use crate::simulation::{BuildError, Simulation, SimulationBuilder, StepReport};
 
@@ -46,13 +48,16 @@ pub struct RunSettings {
     pub until: Option<f64>,
     /// Wall time between checkpoints.
     pub autosave: Duration,
+    /// Wall time before the first checkpoint, where that is shorter: a run that fails early has one.
+    pub first_autosave: Duration,
     /// Set from outside (by a signal, say): the run finishes its step, writes a checkpoint and stops.
     pub stop: Arc<AtomicBool>,
 }
 
 impl Default for RunSettings {
     fn default() -> Self {
-        Self { until: None, autosave: Duration::from_secs(300), stop: Arc::default() }
+        let (autosave, first_autosave) = (Duration::from_secs(300), Duration::from_secs(30));
+        Self { until: None, autosave, first_autosave, stop: Arc::default() }
     }
 }
 
@@ -76,12 +81,15 @@ pub struct Run {
     simulation: Simulation,
     folder: RunFolder,
     table: ObservablesTable,
+    timings: TimingsTable,
     manifest: Manifest,
     settings: RunSettings,
     until: f64,
     is_resumed: bool,
     wall_before: f64,
     last_save: Instant,
+    /// Wall time from the last checkpoint, or from the start, to the next.
+    save_after: Duration,
 }
 
 impl Run {
@@ -130,9 +138,21 @@ impl Run {
         let is_resumed = steps > 0;
         let table = if is_resumed { ObservablesTable::resume(&path, steps) } else { ObservablesTable::create(&path) };
         let table = table.map_err(|cause| RunError::File { path, cause })?;
-        let (until, wall_before) = (manifest.until_s, manifest.wall_s);
-        let last_save = Instant::now();
-        let mut run = Self { simulation, folder, table, manifest, settings, until, is_resumed, wall_before, last_save };
+        let timings = TimingsTable::open(folder.path(), steps);
+        let timings = timings.map_err(|cause| file_error(&folder, TIMINGS, cause))?;
+        let mut run = Self {
+            until: manifest.until_s,
+            wall_before: manifest.wall_s,
+            last_save: Instant::now(),
+            save_after: settings.first_autosave.min(settings.autosave),
+            simulation,
+            folder,
+            table,
+            timings,
+            manifest,
+            settings,
+            is_resumed,
+        };
         run.manifest.threads = rayon::current_num_threads();
         run.write_manifest(RunState::Running)?;
         Ok(run)
@@ -205,7 +225,7 @@ impl Run {
         Ok(end)
     }
 
-    /// One step and its line of the table.
+    /// One step and its line of each table.
     fn step(&mut self) -> Result<StepReport, RunError> {
         let report = self.simulation.step_within(self.until).map_err(|cause| {
             let checkpoint = self.folder.checkpoints().into_iter().next();
@@ -213,6 +233,8 @@ impl Run {
         })?;
         let appended = self.table.append(&report, self.simulation.observables());
         appended.map_err(|cause| file_error(&self.folder, OBSERVABLES, cause))?;
+        let timed = self.timings.append(&report, &self.simulation);
+        timed.map_err(|cause| file_error(&self.folder, TIMINGS, cause))?;
         Ok(report)
     }
 
@@ -224,7 +246,7 @@ impl Run {
 
     /// A checkpoint if one is due. One that cannot be written does not stop the run: it may be finished before it is missed.
     fn autosave(&mut self, reporter: &mut dyn Reporter) {
-        if self.last_save.elapsed() < self.settings.autosave {
+        if self.last_save.elapsed() < self.save_after {
             return;
         }
         if let Err(error) = self.save() {
@@ -232,6 +254,7 @@ impl Run {
             reporter.note(&error.to_string());
         }
         self.last_save = Instant::now();
+        self.save_after = self.settings.autosave;
     }
 
     fn save(&mut self) -> Result<PathBuf, CheckpointError> {

@@ -1,7 +1,7 @@
 //! `observables.csv`: one line per step, whole lines only.
 //!
-//! Every line is written by one call and no buffer holds any back, so a killed run leaves whole lines. No column holds a wall time:
-//! a resumed run leaves the same bytes as an uninterrupted one. A quantity that first appears in a later step becomes a new last
+//! Every line is written by one call and no buffer holds any back, so a killed run leaves whole lines. No column holds a wall time
+//! (those are in `timings.csv`): a resumed run leaves the same bytes as an uninterrupted one. A quantity that first appears in a later step becomes a new last
 //! column; lines before it have no value there.
 
 use std::fs::{self, File};

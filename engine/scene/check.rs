@@ -6,11 +6,17 @@ use froth_components::authored::shape::Shape;
 
 use super::error::SceneError;
 use super::estimate::Estimate;
-use super::text::Tokens;
+use super::text::{Tokens, value_of};
 use super::{AuthoredComponent, AuthoredEntity, Scene, honours};
 
 /// Fewer particles than these are no film: the neighbourhoods of a smaller one overlap all around.
 pub const LEAST_PARTICLES: u64 = 60;
+
+/// Least radius of curvature of a shape, in particle spacings: particles cannot be spread below about 1.
+pub const LEAST_BEND: f64 = 1.5;
+
+/// Most frames of a scene: at 50 a second, more than five hours to watch.
+pub const MOST_FRAMES: u64 = 1_000_000;
 
 /// Shapes a spherical harmonic makes sense on.
 const ROUND: [&str; 3] = ["Sphere", "Ellipsoid", "HalfSphere"];
@@ -40,6 +46,8 @@ impl Scene {
     pub fn check(&self, available: u64) -> Result<Estimate, SceneError> {
         self.check_entities()?;
         self.check_honoured(self.header.method.name())?;
+        self.check_liquid()?;
+        self.check_frames()?;
         let estimate = self.estimate();
         self.check_memory(&estimate, available)?;
         self.check_films(&estimate)?;
@@ -64,6 +72,39 @@ impl Scene {
                 at: self.file.span(component.range.clone()),
             })
         })
+    }
+
+    /// Whether films have liquid that flows.
+    pub(crate) fn has_liquid(&self) -> bool {
+        honours::has_liquid(&self.header.method)
+    }
+
+    /// What acts on liquid alone finds some.
+    fn check_liquid(&self) -> Result<(), SceneError> {
+        if self.has_liquid() {
+            return Ok(());
+        }
+        let mut components = self.entities.iter().flat_map(|entity| &entity.components);
+        let idle = components.find(|component| component.is_built_in && honours::needs_liquid(component.name));
+        idle.map_or(Ok(()), |component| {
+            Err(SceneError::NoLiquid {
+                component: component.name.to_owned(),
+                file: self.file.clone(),
+                at: self.file.span(component.range.clone()),
+                setting: value_of(self.file.text(), "liquid_per_carrier").map(|range| self.file.span(range)),
+            })
+        })
+    }
+
+    /// The frames can be counted, named and kept.
+    fn check_frames(&self) -> Result<(), SceneError> {
+        let frames = self.header.duration.si() * self.header.frames_per_second.si();
+        if frames <= MOST_FRAMES as f64 {
+            return Ok(());
+        }
+        let text = self.file.text();
+        let at = value_of(text, "frames_per_second").or_else(|| value_of(text, "duration")).unwrap_or(0..0);
+        Err(SceneError::TooManyFrames { frames, most: MOST_FRAMES, file: self.file.clone(), at: self.file.span(at) })
     }
 
     /// There is a film, and every entity makes sense.
@@ -121,12 +162,13 @@ impl Scene {
             bytes: estimate.bytes,
             available,
             fitting: estimate.fitting(available),
+            factor: None,
             file: self.file.clone(),
             at: self.file.span(self.resolution.clone()),
         })
     }
 
-    /// Each film has enough particles.
+    /// Each film has enough particles, and they can follow its shape.
     fn check_films(&self, estimate: &Estimate) -> Result<(), SceneError> {
         for (entity, shape) in self.films() {
             let particles = (shape.area() / estimate.spacing.powi(2)).round() as u64;
@@ -136,6 +178,18 @@ impl Scene {
                     least: LEAST_PARTICLES,
                     spacing: estimate.spacing,
                     enough: (shape.area() / LEAST_PARTICLES as f64).sqrt(),
+                    factor: None,
+                    file: self.file.clone(),
+                    at: self.file.span(entity.shape_range()),
+                });
+            }
+            let radius = least_radius_of_curvature(&shape);
+            if radius < LEAST_BEND * estimate.spacing {
+                return Err(SceneError::TooSharp {
+                    radius,
+                    spacing: estimate.spacing,
+                    enough: radius / LEAST_BEND,
+                    factor: None,
                     file: self.file.clone(),
                     at: self.file.span(entity.shape_range()),
                 });
@@ -156,6 +210,18 @@ impl Scene {
     fn entities_keyword(&self) -> std::ops::Range<usize> {
         let text = self.file.text();
         Tokens::of(text).find(|token| &text[token.clone()] == "entities").unwrap_or(0..text.len())
+    }
+}
+
+/// Least radius of curvature of a shape, metres: `c^2 / a` at the tips of an ellipsoid with the longest half axis `a` and the
+/// shortest `c`. The other shapes are as round as they are large, or flat.
+fn least_radius_of_curvature(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Ellipsoid(ellipsoid) => {
+            let radii = ellipsoid.radii.si();
+            radii.min_element() * (radii.min_element() / radii.max_element())
+        }
+        _ => f64::INFINITY,
     }
 }
 

@@ -440,11 +440,36 @@ pub enum SceneError {
         at: SourceSpan,
     },
 
+    /// A component that moves or warms the liquid, under settings that give the film none.
+    #[error("`{component}` acts on the liquid within a film, and `Melp(liquid_per_carrier: 0)` has none")]
+    #[diagnostic(
+        code(F0044),
+        help("write `liquid_per_carrier: 4` or more (16 by default), or take `{component}` out of the scene")
+    )]
+    NoLiquid {
+        /// The component.
+        component: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("has nothing to act on")]
+        at: SourceSpan,
+        /// The setting.
+        #[label("no liquid")]
+        setting: Option<SourceSpan>,
+    },
+
     /// A film of too few particles.
     #[error("the film would have {particles} particles; fewer than {least} are no film")]
     #[diagnostic(
         code(F0050),
-        help("particles are {} apart; write a spacing of {} or less, or more particles", length(*spacing), length(rounded_down(*enough)))
+        help(
+            "particles are {} apart; write a spacing of {} or less, or more particles{}",
+            length(*spacing),
+            length(rounded_down(*enough)),
+            refinement(*factor)
+        )
     )]
     TooCoarse {
         /// Particles it would have.
@@ -455,6 +480,8 @@ pub enum SceneError {
         spacing: f64,
         /// Largest distance that gives enough, metres.
         enough: f64,
+        /// Factor on the resolution from outside the file.
+        factor: Option<f64>,
         /// The file.
         #[source_code]
         file: SceneText,
@@ -471,7 +498,14 @@ pub enum SceneError {
         count(*lagrangian),
         memory(*available)
     )]
-    #[diagnostic(code(F0051), help("write a larger spacing or fewer particles: about {} Eulerian particles fit", count(*fitting)))]
+    #[diagnostic(
+        code(F0051),
+        help(
+            "write a larger spacing or fewer particles: about {} Eulerian particles fit{}",
+            count(*fitting),
+            refinement(*factor)
+        )
+    )]
     TooLarge {
         /// Eulerian particles.
         eulerian: u64,
@@ -483,11 +517,56 @@ pub enum SceneError {
         available: u64,
         /// Eulerian particles that would fit.
         fitting: u64,
+        /// Factor on the resolution from outside the file.
+        factor: Option<f64>,
         /// The file.
         #[source_code]
         file: SceneText,
         /// The resolution.
         #[label("too fine")]
+        at: SourceSpan,
+    },
+
+    /// More frames than anybody watches or any disk holds.
+    #[error("the run would make about {frames:.1e} frames; more than {} are refused", count(*most))]
+    #[diagnostic(code(F0052), help("write a shorter duration or fewer frames per second"))]
+    TooManyFrames {
+        /// Frames it would make.
+        frames: f64,
+        /// Most that are made.
+        most: u64,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The frame rate, or the duration where the rate is the usual one.
+        #[label("too many frames")]
+        at: SourceSpan,
+    },
+
+    /// A shape that bends more sharply than its particles can follow.
+    #[error("the shape bends with a radius of {}, and its particles are {} apart", length(*radius), length(*spacing))]
+    #[diagnostic(
+        code(F0053),
+        help(
+            "write a spacing of {} or less, more particles, or a rounder shape{}",
+            length(rounded_down(*enough)),
+            refinement(*factor)
+        )
+    )]
+    TooSharp {
+        /// Least radius of curvature, metres.
+        radius: f64,
+        /// Distance between particles, metres.
+        spacing: f64,
+        /// Largest distance that follows the shape, metres.
+        enough: f64,
+        /// Factor on the resolution from outside the file.
+        factor: Option<f64>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The shape.
+        #[label("too sharp for the resolution")]
         at: SourceSpan,
     },
 }
@@ -521,6 +600,28 @@ impl SceneError {
             column: contents.column() + 1,
         })
     }
+}
+
+impl SceneError {
+    /// Names the factor on the resolution that came from outside the file, where the fault depends on it.
+    pub(crate) fn refined_by(mut self, outside: Option<f64>) -> Self {
+        if let Self::TooCoarse { factor, .. } | Self::TooLarge { factor, .. } | Self::TooSharp { factor, .. } =
+            &mut self
+        {
+            *factor = outside;
+        }
+        self
+    }
+}
+
+/// What a factor on the resolution did to the scene's own number of particles.
+fn refinement(factor: Option<f64>) -> String {
+    let say = |factor: f64| {
+        let times = factor * factor;
+        let times = if (0.01..1e6).contains(&times) { times.to_string() } else { format!("{times:.1e}") };
+        format!("; `--resolution {factor}` makes {times} times as many particles as the file says")
+    };
+    factor.map(say).unwrap_or_default()
 }
 
 fn missing_help(nearest: Option<&str>) -> String {

@@ -42,7 +42,7 @@ use bevy_ecs::world::World;
 use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Shape, Sphere};
 use froth_components::authored::{Name, PlaceInScene};
 
-pub use check::LEAST_PARTICLES;
+pub use check::{LEAST_BEND, LEAST_PARTICLES, MOST_FRAMES};
 pub use error::{Place, SceneError};
 pub use estimate::{BOUNDARY_ROWS, BYTES_PER_EULERIAN, BYTES_PER_LAGRANGIAN, Estimate, available_memory};
 pub use file::LONGEST_FILE;

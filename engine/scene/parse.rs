@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer};
 use super::error::SceneError;
 use super::header::SceneHeader;
 use super::registry::AuthoredRegistry;
-use super::ron_text::{Block, Fault, options, short};
+use super::ron_text::{Block, Fault, Fields, options, short};
 use super::text::{SceneText, Tokens, quote};
 use super::{AuthoredComponent, AuthoredEntity, Scene};
 
@@ -63,14 +63,14 @@ pub(super) fn scene(file: &SceneText, registry: &AuthoredRegistry) -> Result<Sce
     if Tokens::of(text).next().is_none() {
         return Err(SceneError::Empty { name: file.name().to_owned() });
     }
-    let parsed: SceneFile<'_> = options()
-        .from_str(text)
-        .map_err(|error| Fault { file, text, range: 0..text.len(), root: "Scene" }.explain(error))?;
-    let block = |raw: &RawValue| block_of(file, raw);
-    let resolution = block(parsed.resolution);
+    let parsed: SceneFile<'_> = options().from_str(text).map_err(|error| {
+        Fault { file, text, range: 0..text.len(), root: "Scene", fields: Fields::default() }.explain(error)
+    })?;
+    let block = |raw: &RawValue, root| block_of(file, raw, root);
+    let resolution = block(parsed.resolution, "");
     let header = SceneHeader {
         title: parsed.title,
-        method: method(&block(parsed.method))?,
+        method: method(&block(parsed.method, ""))?,
         resolution: resolution.read::<Resolution>()?,
         duration: parsed.duration,
         frames_per_second: parsed.frames_per_second,
@@ -79,21 +79,21 @@ pub(super) fn scene(file: &SceneText, registry: &AuthoredRegistry) -> Result<Sce
         atmosphere: parsed.atmosphere,
         maximum_step: parsed.maximum_step.map(|step| step.0),
     };
-    let entities = parsed.entities.iter().map(|raws| entity(raws.iter().map(|raw| block(raw)), registry));
+    let entities = parsed.entities.iter().map(|raws| entity(raws.iter().map(|raw| block(raw, "")), registry));
     Ok(Scene {
         header,
         entities: entities.collect::<Result<_, _>>()?,
-        picture: parsed.picture.map(block),
+        picture: parsed.picture.map(|raw| block(raw, "picture")),
         resolution: resolution.range(),
         file: file.clone(),
     })
 }
 
 /// The place in the file of a piece that the RON reader lent from it.
-fn block_of(file: &SceneText, raw: &RawValue) -> Block {
+fn block_of(file: &SceneText, raw: &RawValue, root: &'static str) -> Block {
     let piece = raw.get_ron();
     let start = piece.as_ptr() as usize - file.text().as_ptr() as usize;
-    Block::new(file, start..start + piece.len())
+    Block::new(file, start..start + piece.len(), root)
 }
 
 /// The method; one that is unknown and one that does not exist yet are told apart.

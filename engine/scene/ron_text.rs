@@ -29,15 +29,17 @@ pub(super) fn options() -> ron::Options {
 pub struct Block {
     file: SceneText,
     range: Range<usize>,
+    /// The field it is the value of, where the text begins with no name of its own.
+    root: &'static str,
 }
 
 impl Block {
     /// The part of a file without the spaces and comments around it.
-    pub(super) fn new(file: &SceneText, range: Range<usize>) -> Self {
+    pub(super) fn new(file: &SceneText, range: Range<usize>, root: &'static str) -> Self {
         let mut tokens = Tokens::of(&file.text()[range.clone()]);
         let first = tokens.next().unwrap_or(0..0);
         let end = tokens.last().map_or(first.end, |last| last.end);
-        Self { file: file.clone(), range: range.start + first.start..range.start + end }
+        Self { file: file.clone(), range: range.start + first.start..range.start + end, root }
     }
 
     /// The file it is in.
@@ -70,11 +72,38 @@ impl Block {
     }
 
     /// Reads the value. A bare name is a name with nothing in its brackets: `Hover` is `Hover()`.
-    pub(super) fn read_by<T>(&self, read: impl FnOnce(&str) -> SpannedResult<T>) -> Result<T, SceneError> {
+    pub(super) fn read_by<T>(&self, read: impl Fn(&str) -> SpannedResult<T>) -> Result<T, SceneError> {
         let text =
             if is_identifier(self.text()) { Cow::from(format!("{}()", self.text())) } else { Cow::from(self.text()) };
-        read(&text)
-            .map_err(|error| Fault { file: &self.file, text: &text, range: self.range(), root: "" }.explain(error))
+        read(&text).map_err(|error| {
+            let fields = Fields::of(self.name().unwrap_or_default(), &read);
+            Fault { file: &self.file, text: &text, range: self.range(), root: self.root, fields }.explain(error)
+        })
+    }
+
+    /// An error at the value that the block gives to a field, or at all of it where it gives none.
+    pub(crate) fn out_of_range(&self, field: &str, message: String, help: String) -> SceneError {
+        let (field, at) = self.place_of(field);
+        SceneError::OutOfRange { field, message, help, file: self.file.clone(), at }
+    }
+
+    /// An error at the name that the block gives to a field.
+    pub(crate) fn no_choice(&self, field: &str, found: &str, nearest: Option<&str>, known: &[&str]) -> SceneError {
+        let (field, at) = self.place_of(field);
+        let (found, nearest) = (quote(found), nearest.map(str::to_owned));
+        SceneError::UnknownChoice { found, field, nearest, known: owned(known), file: self.file.clone(), at }
+    }
+
+    /// Path and place of the value of a field.
+    fn place_of(&self, field: &str) -> (String, SourceSpan) {
+        match text::value_of(self.text(), field) {
+            Some(value) => {
+                let path = Surroundings::at(self.text(), value.start).path(self.text());
+                let place = self.range.start + value.start..self.range.start + value.end;
+                (format!("{}.{path}", self.root), self.file.span(place))
+            }
+            None => (self.root.to_owned(), self.file.span(self.range())),
+        }
     }
 
     /// Reads the value as settings of your own; a fault is reported at its place in the scene file.
@@ -86,6 +115,36 @@ impl Block {
     }
 }
 
+/// What is known of the named fields of a value.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fields {
+    /// All of them; none where the value has no named fields.
+    names: &'static [&'static str],
+    /// The first that has no default.
+    needed: Option<&'static str>,
+}
+
+impl Fields {
+    /// Of what `read` reads: it is asked for a field that does not exist, and for a value without fields.
+    fn of<T>(name: &str, read: impl Fn(&str) -> SpannedResult<T>) -> Self {
+        let fault = |fields: &str| read(&format!("{name}({fields})")).err().map(|error| error.code);
+        let names = match fault("no_such_field: 0") {
+            Some(RonError::NoSuchStructField { expected, found, .. }) if found == "no_such_field" => expected,
+            _ => &[],
+        };
+        let needed = match fault("") {
+            Some(RonError::MissingStructField { field, .. }) => Some(field),
+            _ => None,
+        };
+        Self { names, needed }
+    }
+
+    /// Which one to write first.
+    fn first(&self) -> Option<&'static str> {
+        self.needed.or(self.names.first().copied())
+    }
+}
+
 /// A text the RON reader gave up on, and where it stands in the file.
 pub(super) struct Fault<'a> {
     pub(super) file: &'a SceneText,
@@ -94,6 +153,8 @@ pub(super) struct Fault<'a> {
     pub(super) range: Range<usize>,
     /// What a value outside all names belongs to.
     pub(super) root: &'static str,
+    /// Fields of the whole text's value, as far as they are known.
+    pub(super) fields: Fields,
 }
 
 impl Fault<'_> {
@@ -106,6 +167,10 @@ impl Fault<'_> {
             RonError::NoSuchEnumVariant { expected, found, .. } => self.unknown_choice(&found, expected, cursor),
             RonError::MissingStructField { field, .. } => self.missing_field(field, cursor),
             RonError::DuplicateStructField { field, .. } => self.duplicate_field(field, cursor),
+            RonError::ExpectedIdentifier | RonError::SuggestRawIdentifier(_) if self.wants_a_field(cursor) => {
+                self.unnamed_field(cursor)
+            }
+            RonError::SuggestRawIdentifier(_) => self.wrong_type("a name", self.token_at(cursor)),
             RonError::ExceededRecursionLimit => {
                 SceneError::TooDeep { file: self.file.clone(), at: self.in_file(self.token_at(cursor)) }
             }
@@ -170,6 +235,32 @@ impl Fault<'_> {
         }
     }
 
+    /// Whether a field begins at `cursor`: after a bracket or a comma, not after a colon.
+    fn wants_a_field(&self, cursor: usize) -> bool {
+        let found = self.token_at(cursor);
+        let before = Tokens::of(self.text).take_while(|token| token.end <= found.start).last();
+        before.is_some_and(|token| matches!(&self.text[token], "(" | ","))
+    }
+
+    /// A value without the name of its field.
+    fn unnamed_field(&self, cursor: usize) -> SceneError {
+        let found = self.token_at(cursor);
+        let found = text::value_before(self.text, found.end).unwrap_or(found);
+        let owner = self.owner(found.start + 1);
+        let is_outermost = Surroundings::at(self.text, found.start).depth() == 1;
+        let help = match self.fields.first().filter(|_| is_outermost) {
+            Some(first) => format!("write `{owner}({first}: ...)`; fields: {}", self.fields.names.join(", ")),
+            None => "write `name: value`".to_owned(),
+        };
+        SceneError::WrongType {
+            message: format!("`{}` stands where a named field is wanted", quote(&self.text[found.clone()])),
+            field: owner,
+            help,
+            file: self.file.clone(),
+            at: self.in_file(found),
+        }
+    }
+
     fn missing_field(&self, field: &str, cursor: usize) -> SceneError {
         SceneError::MissingField {
             owner: self.owner(cursor),
@@ -218,7 +309,11 @@ impl Fault<'_> {
     /// Path of the field that the token before `cursor` belongs to.
     fn path(&self, cursor: usize) -> String {
         let path = Surroundings::at(self.text, cursor).path(self.text);
-        if path.is_empty() { self.root.to_owned() } else { quote(&path) }
+        match (path.is_empty(), self.root.is_empty() || is_named(self.text)) {
+            (true, _) => self.root.to_owned(),
+            (false, true) => quote(&path),
+            (false, false) => quote(&format!("{}.{path}", self.root)),
+        }
     }
 
     /// What the fields at `cursor` belong to.
@@ -244,6 +339,11 @@ impl Fault<'_> {
         let place = |offset: usize| (self.range.start + offset).min(self.range.end);
         self.file.span(place(range.start)..place(range.end))
     }
+}
+
+/// Whether a text begins with a name, as in `Sphere(...)`.
+fn is_named(text: &str) -> bool {
+    Tokens::of(text).next().is_some_and(|token| is_identifier(&text[token]))
 }
 
 /// What the reader wanted instead of the token it stands before; `None` for punctuation, which is a matter of syntax.

@@ -264,6 +264,11 @@ impl Surroundings {
         Self { open }
     }
 
+    /// Brackets around.
+    pub(super) fn depth(&self) -> usize {
+        self.open.len()
+    }
+
     /// Path of the field, such as `Film.thickness.mean`; empty outside all brackets.
     pub(super) fn path(&self, text: &str) -> String {
         let first = self.open.first().and_then(|bracket| bracket.name.clone());
@@ -313,6 +318,21 @@ pub(super) fn value_before(text: &str, cursor: usize) -> Option<Range<usize>> {
         name = next_name;
     }
     value.map(|value| through_closing_bracket(text, value))
+}
+
+/// The first value that a text gives to a field of this name.
+pub(super) fn value_of(text: &str, field: &str) -> Option<Range<usize>> {
+    let mut tokens = Tokens::of(text).peekable();
+    while let Some(token) = tokens.next() {
+        if &text[token] == field && tokens.next_if(|next| &text[next.clone()] == ":").is_some() {
+            let first = tokens.next()?;
+            let bracket =
+                tokens.peek().filter(|next| is_identifier(&text[first.clone()]) && &text[(*next).clone()] == "(");
+            let last = bracket.map_or_else(|| first.clone(), Clone::clone);
+            return Some(first.start..through_closing_bracket(text, last).end);
+        }
+    }
+    None
 }
 
 /// The token that `cursor` is in, or else the next one.
@@ -413,6 +433,14 @@ mod tests {
         assert_eq!(value_before(text, 4).map(|range| &text[range]), Some("(1, (2), \")\")"));
         assert_eq!(value_before("a: B(1, 2)", 10), Some(3..10));
         assert_eq!(token_after(text, 4).map(|range| &text[range]), Some("1"));
+    }
+
+    #[test]
+    fn the_value_of_a_field_is_found() {
+        let text = "(size: 5, /* width: 1 */ width: 640, look: Map(range: (0, 1)))";
+        let of = |field| value_of(text, field).map(|range| &text[range]);
+        assert_eq!((of("width"), of("range")), (Some("640"), Some("(0, 1)")));
+        assert_eq!((of("look"), of("height")), (Some("Map(range: (0, 1))"), None));
     }
 
     #[test]

@@ -125,6 +125,12 @@ impl SimulationBuilder {
         Ok(simulation)
     }
 
+    /// Reads a scene from text and makes everything but its particles, which tells whether the rest could be made.
+    pub(crate) fn build_without_particles(self, name: &str, text: &str) -> Result<Simulation, BuildError> {
+        let scene = Scene::from_text(name, text, &self.authored)?;
+        self.prepare(scene)
+    }
+
     fn begin(self, scene: Scene) -> Result<Simulation, BuildError> {
         let mut simulation = self.prepare(scene)?;
         let discretise = simulation.method.discretise;
@@ -136,7 +142,8 @@ impl SimulationBuilder {
     /// Everything but the rows.
     fn prepare(self, mut scene: Scene) -> Result<Simulation, BuildError> {
         let method = self.override_header(&mut scene)?;
-        scene.check(available_memory())?;
+        let checked = scene.check(available_memory());
+        checked.map_err(|error| error.refined_by(self.overrides.resolution))?;
         let scene_hash = scene_hash(&scene, &self.overrides);
         let frames = Frames::per_second(scene.header.frames_per_second.si());
         let mut world = empty_world(&scene);

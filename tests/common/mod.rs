@@ -98,12 +98,12 @@ impl Reporter for StopAfter {
 }
 
 /// All bytes of a run that its contract speaks of: the newest checkpoint, the frames, the table, and whatever else is made of them;
-/// not manifest and log, which hold wall times.
+/// not manifest, timings and log, which hold wall times.
 pub(crate) fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let newest = files(&folder.join("checkpoints")).pop_last().expect("a checkpoint");
     let mut results = files(folder);
     assert!(results.contains_key("observables.csv"));
-    results.retain(|name, _| !["manifest.json", "run.log"].contains(&name.as_str()));
+    results.retain(|name, _| !["manifest.json", "timings.csv", "run.log"].contains(&name.as_str()));
     results.extend(files(&folder.join("frames")));
     results.extend([newest]);
     results

@@ -12,6 +12,8 @@ use glam::{Vec2, Vec3};
 
 /// Most sheets of film behind one sample.
 pub(super) const MAX_SHEETS: usize = 8;
+/// Share of the full weight of detail from which a ground adds nothing to what is shown.
+const ENOUGH_DETAIL: f32 = 0.5;
 /// Variance added to the fit, samples squared, so that it stays solvable where all points line up.
 const FIT_FLOOR: f32 = 0.05;
 
@@ -91,10 +93,15 @@ impl TileLayers {
         if inside <= 0.0 {
             return;
         }
-        let terms = terms(splat, offset, inside, along);
-        if let Some(sheet) = self.sheet_for(sample, splat) {
-            sheet.sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        let Some(sheet) = self.sheet_for(sample, splat) else { return };
+        if splat.cover > 1.0 && sheet.sums[0] > FULL_WEIGHT * ENOUGH_DETAIL {
+            let steepness = 4.0 * splat.cover * splat.height * inside;
+            sheet.sums[13] += steepness * along.x;
+            sheet.sums[14] += steepness * along.y;
+            sheet.sums[15] += splat.cover * splat.height * inside * inside;
+            return;
         }
+        sheet.sums.iter_mut().zip(terms(splat, offset, inside, along)).for_each(|(sum, term)| *sum += term);
     }
 
     #[inline]

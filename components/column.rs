@@ -20,6 +20,12 @@ pub trait Plain: Copy + Send + Sync + 'static {
     /// Appends the scalars as floating-point numbers (for export and pictures).
     fn push_lanes(&self, out: &mut Vec<f64>);
 
+    /// Whether a mean of values is a value: true of quantities, false of numbers that are names.
+    const BLENDS: bool = true;
+
+    /// The value of scalars as [`Plain::push_lanes`] gives them.
+    fn from_lanes(lanes: &[f64]) -> Self;
+
     /// Whether every scalar is finite; integers are.
     fn is_finite(&self) -> bool {
         true
@@ -50,6 +56,9 @@ impl Plain for f64 {
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.push(*self);
     }
+    fn from_lanes(lanes: &[f64]) -> Self {
+        lanes[0]
+    }
     fn is_finite(&self) -> bool {
         f64::is_finite(*self)
     }
@@ -66,6 +75,10 @@ impl Plain for u64 {
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.push(*self as f64);
     }
+    const BLENDS: bool = false;
+    fn from_lanes(lanes: &[f64]) -> Self {
+        lanes[0] as Self
+    }
 }
 
 impl Plain for DVec3 {
@@ -78,6 +91,9 @@ impl Plain for DVec3 {
     }
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.extend_from_slice(&self.to_array());
+    }
+    fn from_lanes(lanes: &[f64]) -> Self {
+        Self::from_slice(lanes)
     }
     fn is_finite(&self) -> bool {
         DVec3::is_finite(*self)
@@ -94,6 +110,9 @@ impl Plain for DMat3 {
     }
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.extend_from_slice(&self.to_cols_array());
+    }
+    fn from_lanes(lanes: &[f64]) -> Self {
+        Self::from_cols_slice(lanes)
     }
     fn is_finite(&self) -> bool {
         DMat3::is_finite(self)

@@ -27,4 +27,8 @@ impl Plain for RegionId {
     fn push_lanes(&self, out: &mut Vec<f64>) {
         out.push(f64::from(self.0));
     }
+    const BLENDS: bool = false;
+    fn from_lanes(lanes: &[f64]) -> Self {
+        Self(lanes[0] as u32)
+    }
 }

@@ -33,6 +33,8 @@ kinds! {
     LagrangianParticle = "lagrangian", "lagrangian particles";
     /// A fixed particle beyond the rim of an open film, which fills the kernels there (Deng 2022, §4.8).
     BoundaryParticle = "boundary", "boundary particles";
+    /// A corner of the triangles that a film is made of, where films are meshes; its row is its row in the mesh.
+    MeshVertex = "vertex", "mesh vertices";
     /// A gas volume enclosed by films, or the air on one side of an open film.
     Region = "region", "regions";
 }

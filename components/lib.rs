@@ -1,7 +1,7 @@
 //! What exists in froth: plain data with unit and meaning, no behaviour beyond constructors.
 //!
 //! * [`authored`]: what a scene file can say: shapes, films, fields; [`quantity`]: its dimensioned values.
-//! * [`kind`]: what an entity is (Eulerian particle, Lagrangian particle, boundary particle, region).
+//! * [`kind`]: what an entity is (Eulerian particle, Lagrangian particle, boundary particle, mesh vertex, region).
 //! * [`motion`], [`film`], [`gas`], [`identity`]: what it carries, one physical idea per component.
 //! * [`column`](mod@column): how a component is laid out as scalars, for row permutation, checkpoints and export.
 //! * [`lamella`]: the films of a run; [`clock`], [`material`]: the few quantities that belong to the whole run.

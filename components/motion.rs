@@ -8,6 +8,9 @@ columns! {
     /// Velocity `u` of the film's liquid, metres per second. On Eulerian particles the whole vector; on Lagrangian
     /// particles its tangential part (the normal part lives on the Eulerian particles, see [`NormalSpeed`]).
     pub struct Velocity(DVec3), "velocity", "m/s";
+    /// Whether a wire holds a mesh vertex: 1 if so, else 0. Held vertices move only as their wire does; edges between them
+    /// are drawn as wires.
+    pub struct Pinned(u64), "pinned", "1";
     /// Unit normal `n` of the film, from the back to the front region; outward on a closed bubble.
     pub struct Normal(DVec3), "normal", "1";
     /// Speed `s = u.n` with which the film moves along its normal, metres per second.

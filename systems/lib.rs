@@ -6,10 +6,13 @@
 //! * [`observe`]: measured numbers, faults, times.
 //! * [`rows`]: particles as rows of contiguous columns; the registry of columns; sorting.
 //! * [`neighbours`]: cell lists, compressed rows of neighbours, kernels.
+//! * [`tracker`]: films as a mesh: remeshing, changes of topology, wires, bursts.
+//! * [`melp`], [`geometric_flow`]: the stages of the methods; [`forces`]: what pushes films in every method.
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
 pub mod clock;
 pub mod forces;
+pub mod geometric_flow;
 pub mod melp;
 pub mod neighbours;
 pub mod observe;
@@ -18,3 +21,4 @@ pub mod plan;
 pub mod rows;
 pub mod sampling;
 pub mod stage;
+pub mod tracker;

@@ -1,6 +1,7 @@
 //! Shapes a film starts from: closed ([`Sphere`], [`Ellipsoid`]) or pinned at a rim ([`HalfSphere`], [`Disc`],
 //! [`Rectangle`], [`Hexagon`]).
 //!
+//! Films of one piece, which particles and meshes can be; what takes a mesh is a [`MeshShape`](super::mesh_shape::MeshShape).
 //! Each knows its area and the length of its rim, from which the number of particles is estimated before any is made.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -195,7 +196,7 @@ fn along_z() -> Direction {
     Direction::Z
 }
 
-/// Any one shape.
+/// Any one shape of a single film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A closed sphere.
@@ -326,15 +327,15 @@ impl Shape {
 }
 
 /// Parallels from the equator to a pole; four times as many meridians.
-const QUARTER: i32 = 16;
+pub(super) const QUARTER: i32 = 16;
 
 /// Points of the unit sphere from one parallel to the pole at z.
-fn globe(lowest: i32) -> impl Iterator<Item = DVec3> {
+pub(super) fn globe(lowest: i32) -> impl Iterator<Item = DVec3> {
     (lowest..=QUARTER).flat_map(parallel)
 }
 
 /// Points of one parallel of the unit sphere, counted from the equator.
-fn parallel(row: i32) -> impl Iterator<Item = DVec3> {
+pub(super) fn parallel(row: i32) -> impl Iterator<Item = DVec3> {
     let (height, radius) = (FRAC_PI_2 * f64::from(row) / f64::from(QUARTER)).sin_cos();
     (0..4 * QUARTER).map(move |step| {
         let (sin, cos) = (FRAC_PI_2 * f64::from(step) / f64::from(QUARTER)).sin_cos();

@@ -78,6 +78,8 @@ macro_rules! dimensions {
 dimensions! {
     /// Metres.
     Length: "a length", "m",                            [1, 0, 0, 0, 0, 0], "0.05 or \"5 cm\"", ["m", "cm", "mm", "um", "nm"];
+    /// Cubic metres.
+    Volume: "a volume", "m^3",                          [3, 0, 0, 0, 0, 0], "1e-4 or \"100 ml\"", ["m^3", "L", "ml", "cm^3", "mm^3"];
     /// Seconds.
     Time: "a time", "s",                                [0, 0, 1, 0, 0, 0], "2 or \"20 ms\"", ["s", "ms", "us", "min", "h"];
     /// Metres per second.
@@ -94,6 +96,8 @@ dimensions! {
     MassPerArea: "a mass per area", "kg/m^2",           [-2, 1, 0, 0, 0, 0], "0.05 or \"50 g/m^2\"", ["kg/m^2", "g/m^2", "mg/m^2"];
     /// Square metres per second: kinematic viscosity, diffusivity.
     Viscosity: "a kinematic viscosity", "m^2/s",        [2, 0, -1, 0, 0, 0], "1e-6 or \"1 mm^2/s\"", ["m^2/s", "cm^2/s", "mm^2/s", "cSt"];
+    /// Metres per second and pascal: speed of a film per force per area.
+    Mobility: "a mobility", "m/s/Pa",                   [2, -1, 1, 0, 0, 0], "0.1 or \"10 cm/s/Pa\"", ["m/s/Pa", "cm/s/Pa", "mm/s/Pa"];
     /// Kelvins.
     Temperature: "a temperature", "K",                  [0, 0, 0, 1, 0, 0], "298.15 or \"25 degC\"", ["K", "degC"];
     /// Events or relaxations per second.
@@ -111,7 +115,6 @@ const FOREIGN: &[(&str, [i32; 6])] = &[
     ("a mass", [0, 1, 0, 0, 0, 0]),
     ("an amount of substance", [0, 0, 0, 0, 1, 0]),
     ("an area", [2, 0, 0, 0, 0, 0]),
-    ("a volume", [3, 0, 0, 0, 0, 0]),
     ("a force", [1, 1, -2, 0, 0, 0]),
     ("an energy", [2, 1, -2, 0, 0, 0]),
     ("a power", [2, 1, -3, 0, 0, 0]),

@@ -30,6 +30,8 @@ pub struct Quantity<D>(f64, PhantomData<D>);
 
 /// A length, metres.
 pub type Length = Quantity<dimension::Length>;
+/// A volume, cubic metres.
+pub type Volume = Quantity<dimension::Volume>;
 /// A time, seconds.
 pub type Time = Quantity<dimension::Time>;
 /// A speed, metres per second.
@@ -46,6 +48,8 @@ pub type Density = Quantity<dimension::Density>;
 pub type MassPerArea = Quantity<dimension::MassPerArea>;
 /// A kinematic viscosity or a diffusivity, square metres per second.
 pub type Viscosity = Quantity<dimension::Viscosity>;
+/// A mobility, metres per second and pascal.
+pub type Mobility = Quantity<dimension::Mobility>;
 /// A temperature, kelvins.
 pub type Temperature = Quantity<dimension::Temperature>;
 /// A rate or frequency, per second.

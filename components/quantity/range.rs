@@ -19,6 +19,22 @@ pub fn positive<'de, D: Dimension, De: Deserializer<'de>>(deserializer: De) -> R
     demand(value.si() > 0.0, value, value, rule)
 }
 
+/// Nothing, or [`positive`].
+///
+/// # Errors
+/// As [`positive`].
+pub fn positive_if_given<'de, D: Dimension, De: Deserializer<'de>>(
+    deserializer: De,
+) -> Result<Option<Quantity<D>>, De::Error> {
+    struct Positive<D>(Quantity<D>);
+    impl<'de, D: Dimension> Deserialize<'de> for Positive<D> {
+        fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+            positive(deserializer).map(Self)
+        }
+    }
+    Ok(Option::<Positive<D>>::deserialize(deserializer)?.map(|positive| positive.0))
+}
+
 /// Zero or greater.
 ///
 /// # Errors
@@ -61,12 +77,44 @@ pub fn fraction<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, D
     within(deserializer, 0.0..=1.0, "a number from 0 to 1 is wanted")
 }
 
+/// A part of an edge: above 0, at most 0.5.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn half_at_most<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, f64::MIN_POSITIVE..=0.5, "a number above 0, at most 0.5, is wanted, e.g. 0.25")
+}
+
+/// From 1 to 4, both included.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn one_to_four<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, 1.0..=4.0, "a number from 1 to 4 is wanted, e.g. 1.5")
+}
+
+/// Factor on the lengths of a mesh file: 1e-9 (nanometres) to 1e6.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn mesh_scale<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, 1e-9..=1e6, "a factor of 1e-9 to 1e6 is wanted, e.g. 0.01 for a mesh in centimetres")
+}
+
 /// Relative deviation of a quantity that must stay positive: from 0 to 0.9.
 ///
 /// # Errors
 /// As the quantity, or when it is outside.
 pub fn relative_deviation<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
     within(deserializer, 0.0..=0.9, "a relative deviation from 0 to 0.9 is wanted, e.g. 0.15 or \"15 %\"")
+}
+
+/// Spread of radii about their mean: from 0 to 0.6; more, and the smallest would be lost between the largest.
+///
+/// # Errors
+/// As the quantity, or when it is outside.
+pub fn radius_spread<'de, De: Deserializer<'de>>(deserializer: De) -> Result<Ratio, De::Error> {
+    within(deserializer, 0.0..=0.6, "a spread of radii from 0 to 0.6 is wanted, e.g. 0.2")
 }
 
 /// Thickness of a film: 1 nm to 1 mm. A bare `500` is 500 metres, hardly what was meant.
@@ -100,6 +148,22 @@ pub fn octaves<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::
 /// As the count, or when it is outside.
 pub fn harmonic_degree<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
     small_count(deserializer, 64, "a spherical harmonic has a degree of 1 to 64 here")
+}
+
+/// Cells of a foam along one direction: 1 to 1000.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn cells<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 1000, "1 to 1000 cells along each direction are wanted, e.g. (5, 5, 5)")
+}
+
+/// Bubbles of a packing: 1 to 100 000.
+///
+/// # Errors
+/// As the count, or when it is outside.
+pub fn bubbles<'de, De: Deserializer<'de>>(deserializer: De) -> Result<u32, De::Error> {
+    small_count(deserializer, 100_000, "1 to 100000 bubbles are wanted, e.g. 30")
 }
 
 /// Material particles per carrier: 0 (a film whose liquid does not flow) to 1000.

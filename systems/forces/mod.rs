@@ -10,7 +10,7 @@ use bevy_ecs::system::{Query, Res};
 use froth_components::authored::field::{AirDrag, Gravity, HeatSource, Hover, Sweep, Wind};
 use froth_components::clock::Clock;
 use froth_components::film::{Area, Thickness, Warmth};
-use froth_components::kind::EulerianParticle;
+use froth_components::kind::{EulerianParticle, Kind};
 use froth_components::lamella::Lamellae;
 use froth_components::material::Liquid;
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, NormalSpeed, Position, Velocity};
@@ -19,7 +19,7 @@ use glam::{DMat3, DVec3};
 pub mod heat;
 
 /// Forgets the forces of the step before.
-pub fn clear(mut carriers: Query<(&mut ExternalAcceleration, &mut ExternalPressure), With<EulerianParticle>>) {
+pub fn clear<K: Kind>(mut carriers: Query<(&mut ExternalAcceleration, &mut ExternalPressure), With<K>>) {
     let (mut pushes, mut pressures) = columns_mut(&mut carriers);
     pushes.bypass_change_detection().fill(ExternalAcceleration::default());
     pressures.bypass_change_detection().fill(ExternalPressure::default());
@@ -38,6 +38,16 @@ pub fn pull_by_gravity(
     for (push, warmth) in pushes.bypass_change_detection().iter_mut().zip(warmth) {
         push.0 += gravity * (1.0 - expansion * warmth.0);
     }
+}
+
+/// Adds gravity to films without warmth.
+pub fn pull_evenly_by_gravity<K: Kind>(
+    fields: Query<&Gravity>,
+    mut carriers: Query<&mut ExternalAcceleration, With<K>>,
+    clock: Res<Clock>,
+) {
+    let gravity: DVec3 = fields.iter().map(|field| field.0.at(clock.time).si()).sum();
+    columns_mut(&mut carriers).bypass_change_detection().iter_mut().for_each(|push| push.0 += gravity);
 }
 
 /// Drags the film along with the wind: `drag (velocity - u)`.

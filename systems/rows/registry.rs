@@ -27,6 +27,18 @@ pub struct KindEntry {
     count: fn(&mut World) -> usize,
     spawn: fn(&mut World, usize),
     clear: fn(&mut World),
+    cut: fn(&mut World, usize),
+}
+
+/// What becomes of a column's values where a mesh splits and joins vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nature {
+    /// They blend: a value per place, such as velocity or thickness.
+    Blended,
+    /// They are shared out, and their sum stays: an amount, such as liquid volume.
+    Conserved,
+    /// They are handed on whole: a number that is a name.
+    Copied,
 }
 
 impl KindEntry {
@@ -34,6 +46,16 @@ impl KindEntry {
     #[must_use]
     pub fn count(&self, world: &mut World) -> usize {
         (self.count)(world)
+    }
+
+    /// Appends or removes rows at the end until there are `count`; new ones have every column at its default.
+    pub fn resize(&self, world: &mut World, count: usize) {
+        let now = self.count(world);
+        if count > now {
+            (self.spawn)(world, count - now);
+        } else {
+            (self.cut)(world, now - count);
+        }
     }
 
     /// Replaces all rows by `count` new ones, every column at its default.
@@ -52,6 +74,8 @@ pub struct ColumnEntry {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
+    /// What becomes of its values where vertices are split and joined.
+    pub nature: Nature,
     /// Names of the scalars in a value; empty for a single one.
     pub lanes: &'static [&'static str],
     /// Bytes per row when saved.
@@ -61,6 +85,7 @@ pub struct ColumnEntry {
     save: fn(&mut World) -> Vec<u8>,
     load: fn(&mut World, &[u8]),
     numbers: fn(&mut World) -> Vec<f64>,
+    fill: fn(&mut World, &[f64]),
     first_not_finite: fn(&mut World) -> Option<usize>,
     stable_id: fn(&mut World, usize) -> Option<u64>,
 }
@@ -81,6 +106,11 @@ impl ColumnEntry {
     #[must_use]
     pub fn numbers(&self, world: &mut World) -> Vec<f64> {
         (self.numbers)(world)
+    }
+
+    /// Overwrites the column with numbers as [`ColumnEntry::numbers`] gives them. Whole numbers are exact up to 2^53.
+    pub fn fill(&self, world: &mut World, numbers: &[f64]) {
+        (self.fill)(world, numbers);
     }
 
     /// The first row whose value has a NaN or an infinity.
@@ -115,6 +145,16 @@ impl ColumnRegistry {
     /// Gives every future entity of kind `K` the column `C`, and notes it for sorting, checkpoints and export.
     /// A second registration of the same pair changes nothing.
     pub fn register<K: Kind, C: Column + Default>(world: &mut World) {
+        let nature = if C::Value::BLENDS { Nature::Blended } else { Nature::Copied };
+        Self::register_as::<K, C>(world, nature);
+    }
+
+    /// As [`ColumnRegistry::register`], for an amount whose sum over all rows stays where rows are split and joined.
+    pub fn register_conserved<K: Kind, C: Column + Default>(world: &mut World) {
+        Self::register_as::<K, C>(world, Nature::Conserved);
+    }
+
+    fn register_as<K: Kind, C: Column + Default>(world: &mut World, nature: Nature) {
         let registered = |e: &ColumnEntry| e.kind == K::NAME && e.name == C::NAME;
         if world.get_resource_or_init::<Self>().entries.iter().any(registered) {
             return;
@@ -123,12 +163,13 @@ impl ColumnRegistry {
         let mut registry = world.resource_mut::<Self>();
         if registry.kinds.iter().all(|kind| kind.name != K::NAME) {
             let (count, spawn, clear) = (count_rows::<K>, super::spawn_rows::<K>, despawn_rows::<K>);
-            registry.kinds.push(KindEntry { name: K::NAME, count, spawn, clear });
+            registry.kinds.push(KindEntry { name: K::NAME, count, spawn, clear, cut: cut_rows::<K> });
         }
         registry.entries.push(ColumnEntry {
             kind: K::NAME,
             name: C::NAME,
             unit: C::UNIT,
+            nature,
             lanes: C::Value::LANES,
             row_bytes: C::Value::byte_len(),
             rows: table_rows::<K, C>,
@@ -136,6 +177,7 @@ impl ColumnRegistry {
             save: save_column::<K, C>,
             load: load_column::<K, C>,
             numbers: column_numbers::<K, C>,
+            fill: fill_numbers::<K, C>,
             first_not_finite: first_not_finite::<K, C>,
             stable_id: stable_id::<K>,
         });
@@ -228,6 +270,12 @@ fn column_numbers<K: Kind, C: Column>(world: &mut World) -> Vec<f64> {
     numbers
 }
 
+fn fill_numbers<K: Kind, C: Column>(world: &mut World, numbers: &[f64]) {
+    let lanes = C::Value::LANES.len().max(1);
+    let values: Vec<C> = numbers.chunks_exact(lanes).map(|lanes| C::from_value(C::Value::from_lanes(lanes))).collect();
+    super::fill_column::<K, C>(world, &values);
+}
+
 fn first_not_finite<K: Kind, C: Column>(world: &mut World) -> Option<usize> {
     let mut state = world.query_filtered::<&C, With<K>>();
     let tables = state.contiguous_iter(world).expect("invariant: columns are stored in tables");
@@ -251,6 +299,15 @@ fn stable_id<K: Kind>(world: &mut World, row: usize) -> Option<u64> {
 
 fn count_rows<K: Kind>(world: &mut World) -> usize {
     world.query_filtered::<(), With<K>>().iter(world).count()
+}
+
+/// Removes the last rows: no other row changes its place.
+fn cut_rows<K: Kind>(world: &mut World, count: usize) {
+    let mut state = world.query_filtered::<Entity, With<K>>();
+    let rows: Vec<Entity> = state.iter(world).collect();
+    for row in rows[rows.len() - count..].iter().rev() {
+        world.despawn(*row);
+    }
 }
 
 fn despawn_rows<K: Kind>(world: &mut World) {

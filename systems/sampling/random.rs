@@ -7,6 +7,8 @@
 pub enum Use {
     /// Seeds of noise fields that the scene does not seed itself.
     NoiseSeed = 1,
+    /// Which bubble bursts next.
+    Burst = 2,
 }
 
 /// 64 random bits for particle `id` at `step`.

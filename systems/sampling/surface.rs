@@ -53,22 +53,43 @@ impl LayeredNoise {
     }
 }
 
+/// A perturbation, ready to be evaluated.
+pub struct Displacement {
+    bumps: Option<(LayeredNoise, f64)>,
+    mode: Option<(Harmonic, f64)>,
+}
+
+impl Displacement {
+    /// The displacement that a perturbation asks for.
+    #[must_use]
+    pub fn new(perturbation: Perturbation) -> Self {
+        let bumps = perturbation
+            .bumps
+            .map(|(bumps, seed)| (LayeredNoise::new(seed, bumps.frequency.si(), bumps.octaves), bumps.amplitude.si()));
+        let mode = perturbation.mode.map(|mode| (Harmonic::new(mode.degree, mode.order), mode.amplitude.si()));
+        Self { bumps, mode }
+    }
+
+    /// Height along the normal in sizes of the shape; `arm` is the place from its centre in sizes.
+    #[must_use]
+    pub fn at(&self, arm: DVec3) -> f64 {
+        let bumps = self.bumps.as_ref().map_or(0.0, |(noise, amplitude)| amplitude * noise.at(arm));
+        let mode = self.mode.as_ref().map_or(0.0, |(harmonic, amplitude)| amplitude * harmonic.at(arm));
+        bumps + mode
+    }
+}
+
 /// The sampler of one shape.
 pub struct Surface {
     shape: Shape,
-    bumps: Option<(LayeredNoise, f64)>,
-    mode: Option<(Harmonic, f64)>,
+    displacement: Displacement,
 }
 
 impl Surface {
     /// The surface of `shape`, displaced.
     #[must_use]
     pub fn new(shape: Shape, perturbation: Perturbation) -> Self {
-        let bumps = perturbation
-            .bumps
-            .map(|(bumps, seed)| (LayeredNoise::new(seed, bumps.frequency.si(), bumps.octaves), bumps.amplitude.si()));
-        let mode = perturbation.mode.map(|mode| (Harmonic::new(mode.degree, mode.order), mode.amplitude.si()));
-        Self { shape, bumps, mode }
+        Self { shape, displacement: Displacement::new(perturbation) }
     }
 
     /// About `count` points spread evenly over the unperturbed shape, displaced with it. `lattice` asks for a regular
@@ -135,14 +156,13 @@ impl Surface {
 
     fn displaced(&self, point: FilmPoint) -> FilmPoint {
         let arm = (point.position - self.shape.centre()) / self.shape.size();
-        let bumps = self.bumps.as_ref().map_or(0.0, |(noise, amplitude)| amplitude * noise.at(arm));
-        let mode = self.mode.as_ref().map_or(0.0, |(harmonic, amplitude)| amplitude * harmonic.at(arm));
-        let height = self.shape.size() * (bumps + mode) * self.pinning(point.position);
+        let height = self.shape.size() * self.displacement.at(arm) * self.pinning(point.position);
         FilmPoint { position: point.position + point.normal * height, ..point }
     }
 
     /// 1 well inside the film, falling to 0 at a rim, where the film cannot be displaced.
-    fn pinning(&self, place: DVec3) -> f64 {
+    #[must_use]
+    pub fn pinning(&self, place: DVec3) -> f64 {
         self.rim().map_or(1.0, |rim| {
             let inside = (-rim.beyond(place).0 / (0.3 * self.shape.size())).clamp(0.0, 1.0);
             inside * inside * (3.0 - 2.0 * inside)

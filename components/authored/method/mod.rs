@@ -1,0 +1,116 @@
+//! Which method runs a scene, and its settings: one file per method, [`melp`] and [`geometric_flow`].
+
+pub mod geometric_flow;
+pub mod melp;
+
+use serde::Deserialize;
+
+pub use geometric_flow::{
+    Contact, FilmMotion, GeometricFlowSettings, Inertial, Mass, Overdamped, Remesh, TensionScheme, VolumeRule,
+};
+pub use melp::{Gas, MelpSettings, Transfer};
+
+use crate::quantity::{MassPerArea, range};
+
+/// The method of a scene, with its settings. Written `Melp(cfl: 0.99)`; a bare name takes all defaults.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[non_exhaustive]
+pub enum MethodChoice {
+    /// Moving Eulerian-Lagrangian particles (Deng et al. 2022).
+    Melp(MelpSettings),
+    /// Film mesh under its own tension, with volume constraints.
+    GeometricFlow(GeometricFlowSettings),
+}
+
+impl MethodChoice {
+    /// Which method, without its settings.
+    #[must_use]
+    pub fn name(&self) -> MethodName {
+        match self {
+            Self::Melp(_) => MethodName::Melp,
+            Self::GeometricFlow(_) => MethodName::GeometricFlow,
+        }
+    }
+
+    /// A method with all defaults; `None` if scene files cannot choose it.
+    #[must_use]
+    pub fn with_defaults(name: MethodName) -> Option<Self> {
+        match name {
+            MethodName::Melp => Some(Self::Melp(MelpSettings::default())),
+            MethodName::GeometricFlow => Some(Self::GeometricFlow(GeometricFlowSettings::default())),
+            MethodName::VortexSheet | MethodName::VortexParticle => None,
+        }
+    }
+}
+
+/// A published method. All are known by name; not all are available.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum MethodName {
+    /// Moving Eulerian-Lagrangian particles (Deng et al. 2022).
+    Melp,
+    /// Vortex sheets on a multi-region mesh (Da et al. 2015).
+    VortexSheet,
+    /// Vortex particles on a mesh (Tao et al. 2024).
+    VortexParticle,
+    /// Mean curvature flow with volume constraints.
+    GeometricFlow,
+}
+
+impl MethodName {
+    /// Every known method.
+    pub const ALL: [Self; 4] = [Self::Melp, Self::VortexSheet, Self::VortexParticle, Self::GeometricFlow];
+
+    /// Whether its carriers are the vertices of a mesh; those of the others are particles.
+    #[must_use]
+    pub fn is_on_mesh(self) -> bool {
+        self != Self::Melp
+    }
+
+    /// Name in a scene file.
+    #[must_use]
+    pub fn in_scene(self) -> &'static str {
+        match self {
+            Self::Melp => "Melp",
+            Self::VortexSheet => "VortexSheet",
+            Self::VortexParticle => "VortexParticle",
+            Self::GeometricFlow => "GeometricFlow",
+        }
+    }
+
+    /// Name on the command line.
+    #[must_use]
+    pub fn on_command_line(self) -> &'static str {
+        match self {
+            Self::Melp => "melp",
+            Self::VortexSheet => "vortex-sheet",
+            Self::VortexParticle => "vortex-particle",
+            Self::GeometricFlow => "geometric-flow",
+        }
+    }
+
+    /// Whether [`MethodChoice`] has it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        MethodChoice::with_defaults(self).is_some()
+    }
+
+    /// The method of a name as scene files write it.
+    #[must_use]
+    pub fn from_scene(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.in_scene() == name)
+    }
+}
+
+/// Air that moves with the film's normal motion, as mass per area of film.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub enum AirInertia {
+    /// The film moves its own mass alone. Demands substeps of a millisecond or less; a wobble then fades within some tens of its
+    /// periods by the implicit flow.
+    None,
+    /// `0.4 ρ_air R` with the size `R` of the film: an estimate, the same for all modes.
+    #[default]
+    Local,
+    /// A mass per area of your own, kilograms per square metre.
+    Fixed(#[serde(deserialize_with = "range::not_negative")] MassPerArea),
+}

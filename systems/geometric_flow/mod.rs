@@ -1,0 +1,20 @@
+//! Geometric flow (Ishida et al. 2017, and the normal step of Tao et al. 2024): films as a mesh under their own tension,
+//! with the volume of every bubble kept exactly.
+//!
+//! | stage | system | file |
+//! |---|---|---|
+//! | `Clock` | no vertex crosses more than `cfl` edge lengths | `step_length` |
+//! | `Geometry` | areas, normals, curvature, thickness | `measure` |
+//! | `Dynamics` | where tension, pressure and external forces take the films | `motion` |
+//! | `Deform` | films go there, as far as none touches another | `motion` |
+//! | `Topology` | gas follows bubbles that divide, burst or vanish | `gas` |
+//! | `Observe` | areas, volumes, pressures, energies | `observe` |
+//!
+//! The mathematics is [`froth_surface::flow`] and [`froth_surface::calculus`].
+
+pub mod gas;
+pub mod measure;
+pub mod motion;
+pub mod observe;
+pub mod settings;
+pub mod step_length;

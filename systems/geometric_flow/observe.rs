@@ -1,0 +1,68 @@
+//! What a run of geometric flow measures in every step.
+
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Query, Res, ResMut};
+use froth_components::film::{Area, LiquidVolume};
+use froth_components::gas::{GasPressure, GasVolume, ReferencePressure, ReferenceVolume};
+use froth_components::identity::InRegion;
+use froth_components::kind::{MeshVertex, Region};
+use froth_components::material::Liquid;
+use froth_components::motion::Velocity;
+
+use super::measure::mass_of;
+use super::motion::FlowStep;
+use super::settings::FlowRules;
+use crate::observe::Observables;
+use crate::rows::columns;
+use crate::rows::reduce::{ordered_max, ordered_sum};
+
+/// Largest number of a bubble whose volume and pressure get columns of their own; all are rows of the kind `Region`.
+const LISTED: usize = 40;
+
+/// Records area, energies, speeds, and how the step went.
+pub fn observe_films(
+    vertices: Query<(&Area, &Velocity, &LiquidVolume), With<MeshVertex>>,
+    step: Res<FlowStep>,
+    rules: Res<FlowRules>,
+    liquid: Res<Liquid>,
+    mut observables: ResMut<Observables>,
+) {
+    if vertices.is_empty() {
+        // The last film has burst.
+        observables.record("area", "m^2", 0.0);
+        return;
+    }
+    let (areas, velocities, volumes) = columns(&vertices);
+    let count = areas.len();
+    let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
+    let area = sum(&|v| areas[v].0);
+    observables.record("area", "m^2", area);
+    observables.record("surface_energy", "J", 2.0 * liquid.surface_tension * area);
+    observables.record("liquid", "m^3", sum(&|v| volumes[v].0));
+    observables.record("max_speed", "m/s", ordered_max(count, 0.0, |v| velocities[v].0.length()));
+    if rules.is_inertial() {
+        let mass = |v: usize| mass_of(&rules, &liquid, areas[v], volumes[v]);
+        let energy = sum(&|v| 0.5 * mass(v) * velocities[v].0.length_squared());
+        observables.record("kinetic_energy", "J", energy);
+    }
+    observables.record("limited_vertices", "1", step.limited as f64);
+    observables.record("least_fraction", "1", step.least_fraction);
+    observables.record("pieces", "1", f64::from(step.pieces));
+    observables.record("substeps", "1", f64::from(step.substeps));
+    observables.record("solve_iterations", "1", f64::from(step.solve_iterations));
+}
+
+/// Records the bubbles: how many, how well they keep their volumes, and of the first forty volume and pressure.
+pub fn observe_bubbles(
+    bubbles: Query<(&InRegion, &GasVolume, &ReferenceVolume, &GasPressure, &ReferencePressure), With<Region>>,
+    mut observables: ResMut<Observables>,
+) {
+    observables.record("bubbles", "1", bubbles.iter().len() as f64);
+    let error = bubbles.iter().map(|(_, volume, target, ..)| (volume.0 / target.0 - 1.0).abs()).fold(0.0, f64::max);
+    observables.record("volume_error", "1", error);
+    for (region, volume, _, pressure, outside) in bubbles.iter().filter(|(region, ..)| region.0.0 as usize <= LISTED) {
+        let name = |what: &str| format!("{what}_{}", region.0.0);
+        observables.record(&name("volume"), "m^3", volume.0);
+        observables.record(&name("excess_pressure"), "Pa", pressure.0 - outside.0);
+    }
+}

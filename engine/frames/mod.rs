@@ -1,15 +1,19 @@
-//! Draws the frames of a run: which particles, which quantity, from where; then all frames as one animated picture.
+//! Draws the frames of a run: which films, which quantity, from where; then all frames as one animated picture, and a few
+//! of them as one contact sheet.
 //!
-//! A film is drawn where its carriers are. It shows the values of its material particles where it has some, so that
-//! swirls show at full detail, and those of its carriers where not. The camera is fixed over the run, by the scene alone: a resumed run draws the same bytes.
+//! Where the world has a mesh, its triangles are drawn. Else a film is drawn where its carriers are: it shows the values of
+//! its material particles where it has some, so that swirls show at full detail, and those of its carriers where not.
+//! The camera is fixed over the run, by the scene alone: a resumed run draws the same bytes.
 
+mod mesh;
 mod quantity;
 
 use std::io::Cursor;
+use std::path::Path;
 
 use bevy_ecs::world::World;
-use froth_components::authored::shape::Shape;
-use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle};
+use froth_components::authored::film_shape::FilmShape;
+use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle, MeshVertex};
 use froth_components::lamella::Lamellae;
 use froth_components::motion::{Normal, Position};
 use froth_systems::neighbours::nearest::NearestPoint;
@@ -20,15 +24,21 @@ use rayon::prelude::*;
 
 pub use quantity::QuantityError;
 
+use self::mesh::MeshFilms;
 use self::quantity::Quantity;
 use crate::picture::camera::ELEVATION;
-use crate::picture::{Animation, AnimationSettings, Camera, FilmPoints, Painter, Part, PictureError, PictureSettings};
+use crate::picture::contact_sheet::evenly_chosen;
+use crate::picture::{
+    Animation, AnimationSettings, Camera, ContactSheet, FilmPoints, Painter, Part, PictureError, PictureSettings,
+};
 use crate::run::{FrameError, FrameSink, RunFolder};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
 
 /// File of the animated picture in a run folder.
 const ANIMATION: &str = "animation.png";
+/// File of the contact sheet in a run folder.
+const CONTACT_SHEET: &str = "contact_sheet.png";
 /// Share of the picture that closed films fill: they wobble.
 const FILL: f64 = 0.783;
 /// Share that films fill if all are held by a rim.
@@ -54,7 +64,7 @@ pub enum PictureFramesError {
 }
 
 /// The picture settings of a scene; their faults point into the file.
-fn settings(scene: &Scene) -> Result<PictureSettings, SceneError> {
+pub(crate) fn settings(scene: &Scene) -> Result<PictureSettings, SceneError> {
     let Some(block) = scene.picture() else { return Ok(PictureSettings::default()) };
     let settings: PictureSettings = block.read()?;
     match settings.check_fields() {
@@ -90,7 +100,7 @@ pub fn check(simulation: &Simulation) -> Result<PictureSettings, PictureFramesEr
     Ok(settings)
 }
 
-/// Draws every frame as `frames/000123.png`, and at the end all of them as an animated PNG.
+/// Draws every frame as `frames/000123.png`; at the end all of them as an animated PNG, and a few as a contact sheet.
 pub struct PictureFrames {
     painter: Painter,
     quantity: Quantity,
@@ -114,8 +124,11 @@ impl PictureFrames {
     }
 
     fn paint(&self, world: &mut World) -> Result<RgbImage, PictureError> {
-        let spacing = world.resource::<Lamellae>().spacing;
         let values = self.quantity.values(world);
+        if self.quantity.kind == MeshVertex::NAME {
+            return self.painter.paint_triangles(&MeshFilms::of(world).film(&values));
+        }
+        let spacing = world.resource::<Lamellae>().spacing;
         let carriers = Rows::of::<EulerianParticle>(world);
         if self.quantity.kind != LagrangianParticle::NAME {
             return self.painter.paint(&carriers.film(&values, spacing, Part::Whole));
@@ -149,10 +162,10 @@ impl Rows {
 
 /// The default camera: the outline of all shapes of the scene, with room to wobble.
 fn framing(scene: &Scene, aspect: f64) -> Option<Camera> {
-    let shapes: Vec<Shape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
-    let outline: Vec<DVec3> = shapes.iter().flat_map(Shape::outline).collect();
-    let fill = if shapes.iter().any(Shape::is_closed) { FILL } else { FILL_OF_RIMS };
-    let normals: Vec<DVec3> = shapes.iter().filter_map(Shape::flat_normal).collect();
+    let shapes: Vec<FilmShape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
+    let outline: Vec<DVec3> = shapes.iter().flat_map(FilmShape::outline).collect();
+    let fill = if shapes.iter().any(FilmShape::is_closed) { FILL } else { FILL_OF_RIMS };
+    let normals: Vec<DVec3> = shapes.iter().filter_map(FilmShape::flat_normal).collect();
     Camera::filling(&outline, stand(&normals), fill, aspect).ok()
 }
 
@@ -167,34 +180,48 @@ fn stand(normals: &[DVec3]) -> DVec3 {
 
 impl FrameSink for PictureFrames {
     fn frame(&mut self, world: &mut World, frame: u64, folder: &RunFolder) -> Result<(), FrameError> {
-        let picture = self.paint(world)?;
-        let mut bytes = Cursor::new(Vec::new());
-        picture.write_to(&mut bytes, ImageFormat::Png)?;
-        folder.write(RunFolder::frame_file(frame), bytes.get_ref())?;
-        Ok(())
+        write(folder, RunFolder::frame_file(frame), &self.paint(world)?)
     }
 
     fn finish(&mut self, folder: &RunFolder) -> Result<(), FrameError> {
         let rate = self.frames_per_second.round().clamp(1.0, f64::from(u16::MAX)) as u16;
         let settings = AnimationSettings { frames_per_second: rate, ..AnimationSettings::default() };
         let mut animation = Animation::new(Cursor::new(Vec::new()), settings)?;
-        for frame in 0.. {
-            let path = folder.path().join(RunFolder::frame_file(frame));
-            if !path.exists() {
-                break;
+        let path = |frame| folder.path().join(RunFolder::frame_file(frame));
+        let count = (0..).take_while(|frame| path(*frame).exists()).count() as u64;
+        let chosen = evenly_chosen(count);
+        let mut sheet = ContactSheet::for_frames(chosen.len());
+        for frame in 0..count {
+            let picture = image::open(path(frame))?.to_rgb8();
+            animation.push(&picture)?;
+            if chosen.binary_search(&frame).is_ok() {
+                sheet.push(&picture, time_label(frame, self.frames_per_second));
             }
-            animation.push(&image::open(path)?.to_rgb8())?;
         }
         folder.write(ANIMATION, animation.finish()?.get_ref())?;
-        Ok(())
+        write(folder, CONTACT_SHEET, &sheet.picture())
     }
+}
+
+/// Writes a picture into the run folder.
+fn write(folder: &RunFolder, file: impl AsRef<Path>, picture: &RgbImage) -> Result<(), FrameError> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, ImageFormat::Png)?;
+    folder.write(file, bytes.get_ref())?;
+    Ok(())
+}
+
+/// Time of a frame, with as many decimals as tell frames apart.
+fn time_label(frame: u64, frames_per_second: f64) -> String {
+    let decimals = frames_per_second.log10().ceil().clamp(0.0, 6.0) as usize;
+    format!("{:.decimals$} s", frame as f64 / frames_per_second)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{FACING, framing, stand};
+    use super::{FACING, framing, stand, time_label};
     use crate::scene::{AuthoredRegistry, Scene};
-    use froth_components::authored::shape::Shape;
+    use froth_components::authored::film_shape::FilmShape;
     use glam::DVec3;
 
     fn scene(shapes: &[&str]) -> Scene {
@@ -208,8 +235,8 @@ mod tests {
     /// Largest shares of the picture that the outline reaches to the left, right, bottom and top.
     fn reach(scene: &Scene, aspect: f64) -> [f64; 4] {
         let view = framing(scene, aspect).unwrap().view(aspect, 1.0).unwrap();
-        let shapes: Vec<Shape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
-        shapes.iter().flat_map(Shape::outline).fold([f64::MIN; 4], |[left, right, bottom, top], point| {
+        let shapes: Vec<FilmShape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
+        shapes.iter().flat_map(FilmShape::outline).fold([f64::MIN; 4], |[left, right, bottom, top], point| {
             let placed = view.place(point);
             assert!(placed.z < 0.0, "{point} is behind the camera");
             let (x, y) = view.project(placed);
@@ -251,6 +278,12 @@ mod tests {
         // Room for the wobble on top of the room around any sphere, 1.12 each.
         let sphere = Camera::framing(DVec3::ZERO, 1.12 * 0.1, 1.0);
         assert!((found.position - sphere.position).length() < 0.005 * sphere.position.length());
+    }
+
+    #[test]
+    fn labels_of_frames_tell_them_apart() {
+        let labels = [(3, 10.0), (3, 24.0), (7, 1.0), (1, 1000.0)].map(|(frame, rate)| time_label(frame, rate));
+        assert_eq!(labels, ["0.3 s", "0.12 s", "7 s", "0.001 s"]);
     }
 
     #[test]

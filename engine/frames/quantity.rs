@@ -1,10 +1,12 @@
-//! The quantity that a picture shows: a registered column of the finest kind of particle that has it.
+//! The quantity that a picture shows: a registered column of the finest kind of particle, or of the mesh vertices.
 
 use bevy_ecs::world::World;
 use froth_components::column::Column;
 use froth_components::film::Thickness;
-use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle};
+use froth_components::kind::{EulerianParticle, Kind, LagrangianParticle, MeshVertex};
+use froth_components::motion::Position;
 use froth_components::quantity::nearest;
+use froth_surface::SurfaceMesh;
 use froth_systems::rows::registry::{ColumnEntry, ColumnRegistry};
 
 use crate::picture::Look;
@@ -40,6 +42,8 @@ fn wanted(look: &Look) -> String {
     match look {
         Look::Interference { .. } => Thickness::NAME.to_owned(),
         Look::Map { quantity, .. } => quantity.trim().replace(' ', "_"),
+        // Colours by region show no quantity: one that every kind has will do.
+        Look::Regions { .. } => Position::NAME.to_owned(),
     }
 }
 
@@ -61,9 +65,13 @@ impl Quantity {
     /// The quantity that a look shows.
     pub(super) fn of(look: &Look, world: &mut World) -> Result<Self, QuantityError> {
         // Material particles first: they show the finest detail.
-        let candidates = candidates(world, &[LagrangianParticle::NAME, EulerianParticle::NAME]);
+        let candidates = candidates(world, &[LagrangianParticle::NAME, MeshVertex::NAME, EulerianParticle::NAME]);
         let wanted = wanted(look);
-        let populated = |entry: &&ColumnEntry| entry.name == wanted && !entry.save(world).is_empty();
+        // A mesh may have lost all its vertices: then its films have burst, which makes a picture, too.
+        let has_mesh = world.contains_resource::<SurfaceMesh>();
+        let is_mesh = |entry: &ColumnEntry| has_mesh && entry.kind == MeshVertex::NAME;
+        let populated =
+            |entry: &&ColumnEntry| entry.name == wanted && (is_mesh(entry) || !entry.save(world).is_empty());
         match candidates.iter().find(populated) {
             Some(column) => Ok(Self { kind: column.kind, column: *column }),
             None => Err(QuantityError::of(wanted, &candidates)),
@@ -72,8 +80,8 @@ impl Quantity {
 
     /// Whether the particles that are to come will have the quantity that a look shows.
     pub(super) fn check(look: &Look, world: &World, has_liquid: bool) -> Result<(), QuantityError> {
-        let kinds = [EulerianParticle::NAME, LagrangianParticle::NAME];
-        let candidates = candidates(world, if has_liquid { &kinds } else { &kinds[..1] });
+        let kinds = [EulerianParticle::NAME, MeshVertex::NAME, LagrangianParticle::NAME];
+        let candidates = candidates(world, if has_liquid { &kinds } else { &kinds[..2] });
         let wanted = wanted(look);
         match candidates.iter().any(|entry| entry.name == wanted) {
             true => Ok(()),

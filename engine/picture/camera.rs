@@ -120,6 +120,12 @@ impl Camera {
         Ok(Self::framing(centre, radius.max(smallest), aspect))
     }
 
+    /// Height of what the picture shows at the distance of the target, metres.
+    #[must_use]
+    pub fn height_at_target(&self) -> f64 {
+        2.0 * (0.5 * self.field_of_view.to_radians()).tan() * self.position.distance(self.target)
+    }
+
     /// The camera's axes and scale for a picture of `width` by `height` pixels.
     ///
     /// # Errors

@@ -29,6 +29,24 @@ pub enum PictureError {
         /// What was found there.
         value: f64,
     },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} has vertex {vertex}, but there are only {vertices} vertices")]
+    TriangleVertex {
+        /// Row of the first such triangle.
+        triangle: usize,
+        /// The row it names.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// Triangles and their labels differ in number.
+    #[error("{triangles} triangles but {found} pairs of regions: every triangle needs one")]
+    TriangleLabels {
+        /// Number of triangles.
+        triangles: usize,
+        /// Number of pairs of regions.
+        found: usize,
+    },
     /// A number of the settings, the camera or the film lies outside its range.
     #[error("{name} is {value}, but must be {allowed}")]
     OutOfRange {

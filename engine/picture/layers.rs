@@ -7,7 +7,13 @@
 //! Source: moving least squares after Levin 1998, §3, with linear basis. Limits: at most [`MAX_SHEETS`] sheets per
 //! sample; sheets nearer to each other than about 4 spacings that face alike are drawn as one.
 
+use super::camera::View;
+use super::error::PictureError;
+use super::film::FilmPoints;
+use super::raster::{Content, Sight, TileLight};
+use super::shade::{Shader, Surface};
 use super::splat::{EDGE_WEIGHT, FULL_WEIGHT, Splat};
+use super::tiles::{TileGrid, Tiled};
 use glam::{Vec2, Vec3};
 
 /// Most sheets of film behind one sample.
@@ -31,17 +37,43 @@ struct Sheet {
     faces_eye: bool,
 }
 
-/// A sheet of film at a sample, ready to be shaded.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Surface {
-    /// Value of the film.
-    pub value: f32,
-    /// Unit normal in camera axes, towards the eye.
-    pub normal: Vec3,
-    /// Distance along the view, metres.
-    pub depth: f32,
-    /// Share of the sample that the film covers, 0 to 1.
-    pub coverage: f32,
+/// Films of points, listed by tile.
+#[derive(Debug)]
+pub(super) struct SplatFilms {
+    films: Vec<Tiled<Splat>>,
+}
+
+impl SplatFilms {
+    /// Projects and lists the points of all films.
+    ///
+    /// # Errors
+    /// As [`Tiled::splats`].
+    pub(super) fn new(films: &[FilmPoints], view: &View, grid: &TileGrid) -> Result<Self, PictureError> {
+        Ok(Self { films: films.iter().map(|film| Tiled::splats(view, film, grid)).collect::<Result<_, _>>()? })
+    }
+}
+
+impl Content for SplatFilms {
+    type Layers = TileLayers;
+
+    fn layers(&self, edge: usize) -> TileLayers {
+        TileLayers::new(edge)
+    }
+
+    fn gather(&self, tile: usize, corner: (usize, usize), layers: &mut TileLayers) {
+        layers.restart(corner);
+        self.films.iter().flat_map(|film| film.of_tile(tile)).for_each(|splat| layers.add(splat));
+    }
+}
+
+impl TileLight for TileLayers {
+    fn light(&mut self, (column, row): (usize, usize), sight: &Sight, shader: &Shader) -> Vec3 {
+        let mut sheets = [Surface::default(); MAX_SHEETS];
+        match self.surfaces(column, row, &mut sheets) {
+            0 => sight.background,
+            found => shader.shade(sight, &sheets[..found]),
+        }
+    }
 }
 
 /// The sheets at every sample of one square tile.
@@ -184,7 +216,7 @@ impl Sheet {
     fn surface(&self, coverage: f32) -> Surface {
         let [weight, _, _, _, _, _, _, _, _, normal_x, normal_y, normal_z, depth, ..] = self.sums;
         let normal = Vec3::new(normal_x, normal_y, normal_z).normalize_or(Vec3::Z);
-        Surface { value: self.fitted_value(), normal, depth: depth / weight, coverage }
+        Surface { value: self.fitted_value(), normal, depth: depth / weight, coverage, ..Surface::default() }
     }
 
     fn fitted_value(&self) -> f32 {
@@ -203,9 +235,10 @@ impl Sheet {
 
 #[cfg(test)]
 mod tests {
-    use super::{MAX_SHEETS, Surface, TileLayers};
+    use super::{MAX_SHEETS, TileLayers};
     use crate::picture::camera::{Camera, View};
     use crate::picture::film::{FilmPoints, Part};
+    use crate::picture::shade::Surface;
     use crate::picture::splat::splat_of_point;
     use glam::{DVec3, Vec2};
     use std::f64::consts::PI;

@@ -4,20 +4,28 @@ use super::camera::Camera;
 use super::colour_map::MapLook;
 use super::error::PictureError;
 use super::film::FilmPoints;
+use super::film_network::FilmNetwork;
 use super::interference::InterferenceTable;
+use super::layers::SplatFilms;
+use super::mesh_layers::MeshFilms;
 use super::raster::Drawing;
+use super::region_colours::{RegionsLook, colour_between};
 use super::scale_bar::ScaleBar;
 use super::settings::{Look, PictureSettings};
 use super::shade::Shader;
 use super::studio::Studio;
-use glam::Vec2;
+use super::triangles::FilmTriangles;
+use glam::{DVec3, Vec2, Vec3};
 use image::{Rgb, RgbImage};
+
+/// Radius of a Plateau border at the camera's target, as a share of the picture's height.
+const BORDER_RADIUS: f64 = 0.0032;
 
 /// Paints films by one set of settings; tables are made once.
 #[derive(Debug)]
 pub struct Painter {
     settings: PictureSettings,
-    /// The shader of the interference look; a colour map's depends on the film.
+    /// The shader of the interference look; those of the other looks depend on the films.
     interference: Option<Shader>,
 }
 
@@ -34,7 +42,7 @@ impl Painter {
                 studio: Studio::new(),
                 exposure: settings.exposure as f32,
             }),
-            Look::Map { .. } => None,
+            Look::Map { .. } | Look::Regions { .. } => None,
         };
         Ok(Self { settings, interference })
     }
@@ -62,33 +70,52 @@ impl Painter {
             return Err(PictureError::NoPoints);
         }
         films.iter().try_for_each(FilmPoints::check)?;
-        match &self.interference {
-            Some(shader) => self.draw(films, shader, self.settings.width),
-            None => self.draw_map(films),
+        self.paint_films(&Films::Points(films))
+    }
+
+    /// Paints films of triangles, with the lines where they meet.
+    ///
+    /// # Errors
+    /// [`PictureError`] if the mesh is ragged or not finite, the camera has no direction, or there is neither a camera nor a
+    /// triangle to frame. With a camera, no triangles give the empty stage.
+    pub fn paint_triangles(&self, mesh: &FilmTriangles) -> Result<RgbImage, PictureError> {
+        mesh.check()?;
+        self.paint_films(&Films::Triangles(mesh, FilmNetwork::new(mesh)))
+    }
+
+    fn paint_films(&self, films: &Films) -> Result<RgbImage, PictureError> {
+        match (&self.interference, &self.settings.look) {
+            (Some(shader), _) => self.draw(films, shader, self.settings.width),
+            (None, Look::Regions { opacity, relief }) => {
+                let (opacity, relief) = (*opacity as f32, *relief as f32);
+                let look = RegionsLook { colours: films.colours(), opacity, relief };
+                self.draw(films, &Shader::Regions(look), self.settings.width)
+            }
+            (None, _) => self.draw_map(films),
         }
     }
 
-    fn draw(&self, films: &[FilmPoints], shader: &Shader, width: u32) -> Result<RgbImage, PictureError> {
+    fn draw(&self, films: &Films, shader: &Shader, width: u32) -> Result<RgbImage, PictureError> {
         let size = (width, self.settings.height);
         let aspect = f64::from(size.0) / f64::from(size.1);
-        let framed = || match films {
-            [film] => Camera::framing_points(film.positions, aspect),
-            _ => Camera::framing_points(
-                &films.iter().flat_map(|film| film.positions).copied().collect::<Vec<_>>(),
-                aspect,
-            ),
-        };
-        let camera = self.settings.camera.map_or_else(framed, Ok)?;
+        let camera = self.settings.camera.map_or_else(|| films.framed(aspect), Ok)?;
         let samples = self.settings.samples as usize;
         let background = self.settings.background.backdrop();
-        Drawing { size, samples, camera: &camera, background, shader }.draw(films)
+        let drawing = Drawing { size, samples, camera: &camera, background, shader };
+        match films {
+            Films::Points(films) => drawing.draw(|view, grid| SplatFilms::new(films, view, grid)),
+            Films::Triangles(mesh, network) => {
+                let radius = self.settings.borders.then(|| BORDER_RADIUS * camera.height_at_target());
+                drawing.draw(|view, grid| Ok(MeshFilms::new(mesh, network, radius, view, grid)))
+            }
+        }
     }
 
-    fn draw_map(&self, films: &[FilmPoints]) -> Result<RgbImage, PictureError> {
+    fn draw_map(&self, films: &Films) -> Result<RgbImage, PictureError> {
         let Look::Map { colours, quantity, unit, unit_size, range, relief } = &self.settings.look else {
             unreachable!("invariant: a painter without interference shader has the look of a map");
         };
-        let range = range.unwrap_or_else(|| extremes(films));
+        let range = range.unwrap_or_else(|| films.value_range());
         let look = MapLook { colours: *colours, range, relief: *relief as f32 };
         let shown = (range.0 / unit_size, range.1 / unit_size);
         let bar = ScaleBar { colours: *colours, quantity: quantity.clone(), unit: unit.clone(), range: shown };
@@ -108,12 +135,45 @@ impl Painter {
     }
 }
 
-/// Smallest and largest value of all films.
-fn extremes(films: &[FilmPoints]) -> (f64, f64) {
-    films
-        .iter()
-        .map(FilmPoints::value_range)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), range| (low.min(range.0), high.max(range.1)))
+/// What one picture shows.
+enum Films<'a> {
+    Points(&'a [FilmPoints<'a>]),
+    Triangles(&'a FilmTriangles<'a>, FilmNetwork),
+}
+
+impl Films<'_> {
+    /// Smallest and largest value of all films.
+    fn value_range(&self) -> (f64, f64) {
+        match self {
+            Self::Points(films) => films
+                .iter()
+                .map(FilmPoints::value_range)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), range| (low.min(range.0), high.max(range.1))),
+            // Where all films have burst, the bar still has its ends.
+            Self::Triangles(mesh, _) if mesh.triangles.is_empty() => (0.0, 1.0),
+            Self::Triangles(mesh, _) => mesh.value_range(),
+        }
+    }
+
+    /// A camera that sees all of it.
+    fn framed(&self, aspect: f64) -> Result<Camera, PictureError> {
+        match self {
+            Self::Points([film]) => Camera::framing_points(film.positions, aspect),
+            Self::Points(films) => {
+                let all: Vec<DVec3> = films.iter().flat_map(|film| film.positions).copied().collect();
+                Camera::framing_points(&all, aspect)
+            }
+            Self::Triangles(mesh, _) => Camera::framing_points(&mesh.places(), aspect),
+        }
+    }
+
+    /// One colour per film, by its regions.
+    fn colours(&self) -> Vec<Vec3> {
+        match self {
+            Self::Points(_) => vec![colour_between([0, 1])],
+            Self::Triangles(mesh, network) => RegionsLook::colours_of(mesh, network),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -122,6 +182,7 @@ mod tests {
     use crate::picture::error::PictureError;
     use crate::picture::film::{FilmPoints, Part};
     use crate::picture::settings::PictureSettings;
+    use crate::picture::test_meshes::{double_bubble, sphere};
     use glam::DVec3;
     use image::RgbImage;
 
@@ -209,6 +270,59 @@ mod tests {
         let dark_blue = picture.pixels().filter(|p| p.0[2] / 2 > p.0[1] && p.0[2] > 70).count();
         let yellow = picture.pixels().filter(|p| p.0[0] > 200 && p.0[1] > 200 && p.0[2] < 80).count();
         assert!(dark_blue > 50 && yellow > 20, "{dark_blue} and {yellow}");
+    }
+
+    #[test]
+    fn the_bytes_of_a_mesh_do_not_depend_on_the_number_of_threads() {
+        let mesh = double_bubble(36);
+        for look in ["(width: 150, height: 130)", "(width: 150, height: 130, look: Regions())"] {
+            let [one, two, five] =
+                [1, 2, 5].map(|threads| in_pool(threads, || painter(look).paint_triangles(&mesh.film()).unwrap()));
+            assert!(one == two && one == five, "{look}");
+        }
+    }
+
+    #[test]
+    fn a_bubble_of_triangles_looks_like_one_of_points() {
+        let (bubble, mut mesh) = (Bubble::new(40_000), sphere(5));
+        mesh.values = mesh.positions.iter().map(|d| 1e-9 * (450.0 - 250.0 * d.y + 60.0 * (7.0 * d.x).sin())).collect();
+        let camera = "camera: Some((position: (0, 0.8, 4), target: (0, 0, 0)))";
+        for look in ["", "look: Map(quantity: \"thickness\", range: Some((1e-7, 8e-7))),"] {
+            let painter = painter(&format!("(width: 160, height: 120, {look} {camera})"));
+            let (points, triangles) =
+                (painter.paint(&bubble.film()).unwrap(), painter.paint_triangles(&mesh.film()).unwrap());
+            let difference: u64 = points.iter().zip(triangles.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+            let mean = difference as f64 / points.len() as f64;
+            assert!(mean < 1.5, "{mean} of 255 on average");
+        }
+    }
+
+    #[test]
+    fn the_films_of_a_double_bubble_have_a_colour_each_and_a_dark_border() {
+        let camera = "camera: Some((position: (3, 1.5, 4), target: (0, 0, 0)))";
+        let settings = format!("(width: 200, height: 150, look: Regions(opacity: 1.0, relief: 0.0), {camera})");
+        let with = painter(&settings).paint_triangles(&double_bubble(48).film()).unwrap();
+        let without = painter(&settings.replace("look", "borders: false, look"));
+        let without = without.paint_triangles(&double_bubble(48).film()).unwrap();
+        let dark = |picture: &RgbImage| picture.pixels().filter(|p| p.0.iter().all(|c| *c < 30)).count();
+        assert!(dark(&with) > dark(&without) && with != without);
+        let colours: std::collections::BTreeSet<[u8; 3]> =
+            without.pixels().map(|p| p.0).filter(|p| p.iter().any(|c| *c > 120)).collect();
+        let whole = |colour: &&[u8; 3]| without.pixels().filter(|p| p.0 == **colour).count() > 500;
+        assert_eq!(colours.iter().filter(whole).count(), 2, "two outer films hide the wall");
+    }
+
+    #[test]
+    fn a_mesh_whose_films_have_burst_leaves_the_empty_stage() {
+        let mut mesh = sphere(1);
+        mesh.triangles.clear();
+        mesh.labels.clear();
+        for look in ["", "look: Map(quantity: \"thickness\"),"] {
+            let settings =
+                format!("(width: 50, height: 40, {look} camera: Some((position: (0, 0, 4), target: (0, 0, 0))))");
+            assert_eq!(painter(&settings).paint_triangles(&mesh.film()).unwrap().dimensions(), (50, 40));
+        }
+        assert!(matches!(painter("()").paint_triangles(&mesh.film()), Err(PictureError::NoPoints)));
     }
 
     #[test]

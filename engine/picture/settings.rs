@@ -32,6 +32,8 @@ pub struct PictureSettings {
     pub samples: u32,
     /// Soap film, or a colour map of any quantity.
     pub look: Look,
+    /// Whether films of triangles are drawn with their Plateau borders, free rims and wires.
+    pub borders: bool,
 }
 
 impl Default for PictureSettings {
@@ -44,6 +46,7 @@ impl Default for PictureSettings {
             exposure: 1.0,
             samples: 1,
             look: Look::default(),
+            borders: true,
         }
     }
 }
@@ -78,6 +81,15 @@ pub enum Look {
         #[serde(default = "gentle_relief")]
         relief: f64,
     },
+    /// Each film of triangles in one colour, by the two regions that it divides. Films of points all have one colour.
+    Regions {
+        /// Share of what is behind a film that it hides, 0 to 1.
+        #[serde(default = "half")]
+        opacity: f64,
+        /// How much surfaces seen at an angle are darkened to show the shape, 0 (flat colours) to 1.
+        #[serde(default = "gentle_relief")]
+        relief: f64,
+    },
 }
 
 impl Default for Look {
@@ -92,6 +104,10 @@ fn soap_solution_index() -> f64 {
 
 fn one() -> f64 {
     1.0
+}
+
+fn half() -> f64 {
+    0.5
 }
 
 fn gentle_relief() -> f64 {
@@ -134,6 +150,10 @@ impl PictureSettings {
         match &self.look {
             Look::Interference { refractive_index } => {
                 within("refractive_index", "the refractive index", *refractive_index, &(1.0..=4.0), "1 to 4")
+            }
+            Look::Regions { opacity, relief } => {
+                within("opacity", "the opacity", *opacity, &(0.0..=1.0), "0 to 1")?;
+                within("relief", "the relief", *relief, &(0.0..=1.0), "0 to 1")
             }
             Look::Map { unit_size, range, relief, .. } => {
                 let positive = f64::MIN_POSITIVE..=f64::MAX;

@@ -1,6 +1,6 @@
-//! Sorts the ellipses into square tiles, so that tiles can be drawn side by side.
+//! Sorts ellipses, triangles and lines into square tiles, so that tiles can be drawn side by side.
 //!
-//! Points are handled in chunks of fixed size; a tile visits the chunks in order, and in each its ellipses in order.
+//! Rows are handled in chunks of fixed size; a tile visits the chunks in order, and in each its shapes in order.
 //! The order of every sum is therefore fixed by the input, for any number of threads.
 
 use super::camera::View;
@@ -10,7 +10,7 @@ use super::splat::{Splat, splat_of_point};
 use glam::Vec2;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-/// Points per chunk. Part of the result: another size sums in another order.
+/// Rows per chunk. Part of the result: another size sums in another order.
 const CHUNK: usize = 16_384;
 
 /// Ellipses over one sample, on average, beyond which a film is refused: some 200 sheets behind each other.
@@ -45,11 +45,11 @@ impl TileGrid {
         (tile % self.columns * self.edge, tile / self.columns * self.edge)
     }
 
-    /// Calls `visit` for each tile that the box of an ellipse touches.
-    fn touched(&self, splat: &Splat, mut visit: impl FnMut(usize)) {
+    /// Calls `visit` for each tile that the box of a shape touches.
+    fn touched(&self, shape: &impl Flat, mut visit: impl FnMut(usize)) {
         let cell =
             |position: f32, count: usize| ((position / self.edge as f32).floor().max(0.0) as usize).min(count - 1);
-        let (low, high) = (splat.centre - splat.reach, splat.centre + splat.reach);
+        let (low, high) = shape.bounds();
         for row in cell(low.y, self.rows)..=cell(high.y, self.rows) {
             for column in cell(low.x, self.columns)..=cell(high.x, self.columns) {
                 visit(row * self.columns + column);
@@ -58,50 +58,74 @@ impl TileGrid {
     }
 }
 
-/// The ellipses of one chunk of points, listed by tile.
+/// A shape in the picture plane.
+pub(super) trait Flat: Sync + Send {
+    /// Lower and upper corner of a box around it, samples; the box meets the picture.
+    fn bounds(&self) -> (Vec2, Vec2);
+}
+
+impl Flat for Splat {
+    fn bounds(&self) -> (Vec2, Vec2) {
+        (self.centre - self.reach, self.centre + self.reach)
+    }
+}
+
+/// The shapes of one chunk of rows, listed by tile.
 #[derive(Debug)]
-struct Chunk {
-    splats: Vec<Splat>,
+struct Chunk<S> {
+    shapes: Vec<S>,
     /// `tiles + 1` entries into `order`.
     offsets: Vec<u32>,
     order: Vec<u32>,
 }
 
-/// All ellipses of a film, listed by tile.
+/// Shapes listed by tile.
 #[derive(Debug)]
-pub(super) struct TiledSplats {
-    chunks: Vec<Chunk>,
+pub(super) struct Tiled<S> {
+    chunks: Vec<Chunk<S>>,
 }
 
-impl TiledSplats {
+impl<S: Flat> Tiled<S> {
+    /// Projects rows `0..rows`, each to a shape or to nothing, and sorts the shapes.
+    pub(super) fn new(rows: usize, grid: &TileGrid, project: impl Fn(usize) -> Option<S> + Sync) -> Self {
+        Self::sort(projected(rows, project), grid)
+    }
+
+    fn sort(projected: Vec<Vec<S>>, grid: &TileGrid) -> Self {
+        Self { chunks: projected.into_par_iter().map(|shapes| sort_by_tile(shapes, grid)).collect() }
+    }
+
+    /// The shapes that touch a tile, in the order of their rows.
+    pub(super) fn of_tile(&self, tile: usize) -> impl Iterator<Item = &S> {
+        self.chunks.iter().flat_map(move |chunk| {
+            let rows = chunk.offsets[tile] as usize..chunk.offsets[tile + 1] as usize;
+            chunk.order[rows].iter().map(|&row| &chunk.shapes[row as usize])
+        })
+    }
+}
+
+impl Tiled<Splat> {
     /// Projects and sorts all points of a film.
     ///
     /// # Errors
     /// [`PictureError::OutOfRange`] if the ellipses overlap so often that the spacing cannot be right.
-    pub(super) fn new(view: &View, film: &FilmPoints, grid: &TileGrid) -> Result<Self, PictureError> {
-        let projected: Vec<Vec<Splat>> = (0..film.positions.len().div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| {
-                let end = ((chunk + 1) * CHUNK).min(film.positions.len());
-                (chunk * CHUNK..end).filter_map(|row| splat_of_point(view, film, row)).collect()
-            })
-            .collect();
+    pub(super) fn splats(view: &View, film: &FilmPoints, grid: &TileGrid) -> Result<Self, PictureError> {
+        let projected = projected(film.positions.len(), |row| splat_of_point(view, film, row));
         let covered: f64 = projected.iter().flatten().map(|splat| visible_box(splat, view)).sum();
         if covered > (MOST_OVERLAPS * view.width * view.height).max(ALWAYS_DRAWN) {
             let (name, allowed) = ("the spacing of the film", "about the square root of its area per point");
             return Err(PictureError::OutOfRange { name, value: film.spacing, allowed });
         }
-        let chunks = projected.into_par_iter().map(|splats| sort_by_tile(splats, grid)).collect();
-        Ok(Self { chunks })
+        Ok(Self::sort(projected, grid))
     }
+}
 
-    /// The ellipses that touch a tile, in the order of the points.
-    pub(super) fn of_tile(&self, tile: usize) -> impl Iterator<Item = &Splat> {
-        self.chunks.iter().flat_map(move |chunk| {
-            let rows = chunk.offsets[tile] as usize..chunk.offsets[tile + 1] as usize;
-            chunk.order[rows].iter().map(|&row| &chunk.splats[row as usize])
-        })
-    }
+/// Shapes of rows `0..rows`, chunk after chunk.
+fn projected<S: Send>(rows: usize, project: impl Fn(usize) -> Option<S> + Sync) -> Vec<Vec<S>> {
+    (0..rows.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| (chunk * CHUNK..((chunk + 1) * CHUNK).min(rows)).filter_map(&project).collect())
+        .collect()
 }
 
 /// Samples of the picture in the box around an ellipse.
@@ -112,22 +136,22 @@ fn visible_box(splat: &Splat, view: &View) -> f64 {
     f64::from((high - low).element_product())
 }
 
-/// Counting sort of (tile, ellipse) pairs.
-fn sort_by_tile(splats: Vec<Splat>, grid: &TileGrid) -> Chunk {
+/// Counting sort of (tile, shape) pairs.
+fn sort_by_tile<S: Flat>(shapes: Vec<S>, grid: &TileGrid) -> Chunk<S> {
     let mut offsets = vec![0_u32; grid.len() + 1];
-    for splat in &splats {
-        grid.touched(splat, |tile| offsets[tile + 1] += 1);
+    for shape in &shapes {
+        grid.touched(shape, |tile| offsets[tile + 1] += 1);
     }
     for tile in 0..grid.len() {
         offsets[tile + 1] += offsets[tile];
     }
     let mut next = offsets.clone();
     let mut order = vec![0; offsets[grid.len()] as usize];
-    for (row, splat) in splats.iter().enumerate() {
-        grid.touched(splat, |tile| {
+    for (row, shape) in shapes.iter().enumerate() {
+        grid.touched(shape, |tile| {
             order[next[tile] as usize] = row as u32;
             next[tile] += 1;
         });
     }
-    Chunk { splats, offsets, order }
+    Chunk { shapes, offsets, order }
 }

@@ -45,6 +45,66 @@ pub const GALLERY: &[BuiltInScene] = &[
         summary: "a bubble at rest at 1 atm stays at rest",
         text: include_str!("../scenes/resting_bubble.ron"),
     },
+    BuiltInScene {
+        name: "sphere",
+        summary: "a bumpy bubble becomes a sphere",
+        text: include_str!("../scenes/sphere.ron"),
+    },
+    BuiltInScene {
+        name: "double_bubble",
+        summary: "gas passes between two bubbles that share a wall",
+        text: include_str!("../scenes/double_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "triple_bubble",
+        summary: "three bubbles are blown to unequal volumes",
+        text: include_str!("../scenes/triple_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "quadruple_bubble",
+        summary: "four bubbles are blown to unequal volumes",
+        text: include_str!("../scenes/quadruple_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "coalescence",
+        summary: "two bubbles touch and become a double bubble",
+        text: include_str!("../scenes/coalescence.ron"),
+    },
+    BuiltInScene {
+        name: "pulled_double_bubble",
+        summary: "two rings pull a double bubble apart",
+        text: include_str!("../scenes/pulled_double_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "catenoid",
+        summary: "a film between two rings necks, pinches off, and leaves two discs",
+        text: include_str!("../scenes/catenoid.ron"),
+    },
+    BuiltInScene {
+        name: "tetrahedral_frame",
+        summary: "six flat films in a tetrahedron of wire",
+        text: include_str!("../scenes/tetrahedral_frame.ron"),
+    },
+    BuiltInScene {
+        name: "cubic_frame",
+        summary: "thirteen films in a cube of wire",
+        text: include_str!("../scenes/cubic_frame.ron"),
+    },
+    BuiltInScene {
+        name: "octahedral_frame",
+        summary: "films in an octahedron of wire find a minimum by themselves",
+        text: include_str!("../scenes/octahedral_frame.ron"),
+    },
+    BuiltInScene {
+        name: "foam_lattice",
+        summary: "a block of 125 cubes becomes a foam",
+        text: include_str!("../scenes/foam_lattice.ron"),
+    },
+    BuiltInScene {
+        name: "bursting_foam",
+        summary: "ten bubbles burst one by one",
+        text: include_str!("../scenes/bursting_foam.ron"),
+    },
     // For `froth verify` alone.
     BuiltInScene {
         name: "shape_mode",

@@ -105,7 +105,7 @@ pub fn measure(name: &str, text: &str, carriers: u64, settings: BenchSettings) -
 /// The scene, its resolution scaled to `carriers` Eulerian particles.
 fn sized(name: &str, text: &str, carriers: u64) -> Result<Simulation, BuildError> {
     let scene = crate::scene::Scene::from_text(name, text, &AuthoredRegistry::built_in())?;
-    let authored = scene.check(available_memory())?.eulerian.max(1);
+    let authored = scene.check(available_memory())?.carriers().max(1);
     let factor = (carriers as f64 / authored as f64).sqrt();
     let overrides = Overrides { resolution: Some(factor), ..Overrides::default() };
     Simulation::builder().overrides(overrides).build_from_text(name, text)

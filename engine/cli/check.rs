@@ -2,14 +2,18 @@
 
 use clap::Args;
 use froth_components::authored::field::{Gravity, Wind};
-use froth_components::authored::method::MethodChoice;
+use froth_components::authored::method::{FilmMotion, GeometricFlowSettings, MelpSettings, MethodChoice};
 use froth_components::authored::motion::{Drift, Spin, Swirl};
+use froth_components::authored::wire::Moves;
+use froth_components::quantity::Time;
 use glam::DVec3;
 
 use super::report::{Failure, show};
 use super::{DONE, WRONG_USAGE, say, scene_choice};
+use crate::frames;
+use crate::method::method;
 use crate::picture::PictureSettings;
-use crate::scene::{Estimate, Scene};
+use crate::scene::{AuthoredRegistry, Estimate, Rows, Scene, SceneHeader, available_memory};
 use crate::simulation::{Frames, Simulation};
 
 /// Each picture is written twice: as a frame, and in the animation.
@@ -26,8 +30,8 @@ pub(super) struct CheckArguments {
 pub(super) fn check(arguments: &CheckArguments) -> Result<u8, Failure> {
     let mut exit_code = DONE;
     for argument in &arguments.scenes {
-        match scene_choice::check(argument, Simulation::builder()) {
-            Ok((simulation, pictures)) => say(describe(simulation.scene(), &pictures)),
+        match checked(argument) {
+            Ok(description) => say(description),
             Err(failure) => {
                 show(&failure);
                 exit_code = WRONG_USAGE;
@@ -37,6 +41,17 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<u8, Failure> {
     Ok(exit_code)
 }
 
+/// What the scene that `argument` means would build. What no code runs is checked as far as it goes.
+fn checked(argument: &str) -> Result<String, Failure> {
+    let scene = scene_choice::read(argument, &AuthoredRegistry::built_in())?;
+    if method(scene.header.method.name()).is_none() {
+        scene.check(available_memory())?;
+        return Ok(describe(&scene, &frames::settings(&scene)?));
+    }
+    let (simulation, pictures) = scene_choice::check(argument, Simulation::builder())?;
+    Ok(describe(simulation.scene(), &pictures))
+}
+
 fn describe(scene: &Scene, pictures: &PictureSettings) -> String {
     let (header, estimate) = (&scene.header, scene.estimate());
     let (duration, rate) = (header.duration.si(), header.frames_per_second.si());
@@ -44,15 +59,9 @@ fn describe(scene: &Scene, pictures: &PictureSettings) -> String {
     let frames = Frames::per_second(rate).count_until(duration);
     [
         format!("{}: {}", scene.source().name(), header.title),
-        format!("  method     {}", header.method.name().on_command_line()),
+        format!("  method     {}", method_line(header)),
         format!("  entities   {} authored, {films} of them films", scene.entities().len()),
-        format!(
-            "  particles  {} eulerian, {} lagrangian, {} boundary; {:.3} mm apart",
-            estimate.eulerian,
-            estimate.lagrangian,
-            estimate.boundary,
-            1e3 * estimate.spacing
-        ),
+        carriers(&estimate),
         format!(
             "  memory     about {:.1} MB, and {:.1} MB to draw a picture",
             1e-6 * estimate.bytes as f64,
@@ -70,6 +79,22 @@ fn describe(scene: &Scene, pictures: &PictureSettings) -> String {
     .join("\n")
 }
 
+/// The method, and whether any code runs it.
+fn method_line(header: &SceneHeader) -> String {
+    let name = header.method.name();
+    let note = if method(name).is_some() { "" } else { "; no part of this version runs it" };
+    format!("{}{note}", name.on_command_line())
+}
+
+/// What the films are made of.
+fn carriers(estimate: &Estimate) -> String {
+    let (rows, spacing) = (estimate.rows, 1e3 * estimate.spacing);
+    match rows {
+        Rows::Particles { .. } => format!("  particles  {rows}; {spacing:.3} mm apart"),
+        Rows::Mesh { .. } => format!("  mesh       {rows}; edges of {spacing:.3} mm"),
+    }
+}
+
 /// Length of a PNG that could not be compressed, bytes.
 fn bytes_of_picture(pictures: &PictureSettings) -> f64 {
     3.0 * f64::from(pictures.width) * f64::from(pictures.height)
@@ -77,24 +102,43 @@ fn bytes_of_picture(pictures: &PictureSettings) -> f64 {
 
 /// What is known of the steps: a frame ends one, and a speed that the films may well reach asks for more.
 fn steps(scene: &Scene, estimate: &Estimate) -> String {
-    let header = &scene.header;
-    let (duration, frame) = (header.duration.si(), 1.0 / header.frames_per_second.si());
-    let limit = header.maximum_step.map_or(frame, |step| step.si().min(frame));
-    // As many equal steps as a frame needs.
-    let longest = frame / (frame / limit).ceil();
+    let (duration, longest) = (scene.header.duration.si(), longest_step(&scene.header));
     let least = (duration / longest).ceil();
     let known = format!("{least:.0} or more, none longer than {:.3} ms", 1e3 * longest);
-    let MethodChoice::Melp(settings) = header.method else { return known };
-    let known = match settings.substeps {
-        substeps if substeps > 1 && scene.has_liquid() => format!("{known}, each of up to {substeps} substeps"),
-        _ => known,
+    let (known, cfl) = match scene.header.method {
+        MethodChoice::Melp(MelpSettings { substeps, cfl, .. }) if substeps > 1 && scene.has_liquid() => {
+            (format!("{known}, each of up to {substeps} substeps"), cfl)
+        }
+        MethodChoice::Melp(MelpSettings { cfl, .. })
+        | MethodChoice::GeometricFlow(GeometricFlowSettings { cfl, .. }) => (known, cfl),
+        _ => return known,
     };
     let speed = likely_speed(scene);
-    let crossing = settings.cfl.si() * estimate.spacing / speed;
+    let crossing = cfl.si() * estimate.spacing / speed;
     if crossing >= longest {
         return known;
     }
     format!("{known}; about {:.0} if films flow at {speed:.2} m/s", duration / crossing)
+}
+
+/// The longest of equal steps, as many as a frame needs under the limits that scene and method give, s.
+fn longest_step(header: &SceneHeader) -> f64 {
+    let frame = 1.0 / header.frames_per_second.si();
+    let own = match header.method {
+        MethodChoice::GeometricFlow(settings) => settings.time_step,
+        _ => None,
+    };
+    let limit = [header.maximum_step, own].into_iter().flatten().map(Time::si).fold(frame, f64::min);
+    frame / (frame / limit).ceil()
+}
+
+/// The speed of a fall, m/s; of overdamped films, which do not fall freely, that at which tension moves a bubble's own curvature,
+/// `mobility * 4 σ / R`.
+fn creep_or(fall: f64, scene: &Scene) -> f64 {
+    let MethodChoice::GeometricFlow(settings) = scene.header.method else { return fall };
+    let FilmMotion::Overdamped(creep) = settings.motion else { return fall };
+    let smallest = scene.films().map(|(_, shape)| shape.size()).fold(f64::INFINITY, f64::min);
+    creep.mobility.si() * 4.0 * scene.header.liquid.surface_tension.si() / smallest
 }
 
 /// A speed that films may reach, m/s: that of the start, of the wind, and of a fall through their own size, `sqrt(2 g R)`.
@@ -105,9 +149,11 @@ fn likely_speed(scene: &Scene) -> f64 {
         let spin = film.get::<Spin>().map_or(0.0, |spin| spin.rate.si().abs() * shape.size());
         drift + spin + film.get::<Swirl>().map_or(0.0, |swirl| swirl.speed.si())
     });
+    let wires = components().filter_map(|entity| entity.get::<Moves>());
+    let pulled = wires.flat_map(|moves| moves.velocity.frames()).map(|frame| frame.value.si().length());
     let wind = components().filter_map(|entity| entity.get::<Wind>()).map(|wind| wind.velocity.at(0.0).si().length());
     let pull = components().filter_map(|entity| entity.get::<Gravity>()).map(|field| field.0.at(0.0).si());
     let size = scene.films().map(|(_, shape)| shape.size()).fold(0.0, f64::max);
     let fall = (2.0 * pull.sum::<DVec3>().length() * size).sqrt();
-    start.chain(wind).chain([fall]).fold(0.0, f64::max)
+    start.chain(wind).chain(pulled).chain([creep_or(fall, scene)]).fold(0.0, f64::max)
 }

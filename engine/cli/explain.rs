@@ -49,7 +49,7 @@ fn is_code(what: &str) -> bool {
 
 /// The scene with few particles, or as it is where a film would get too few. Which systems run does not depend on it.
 fn coarse(argument: &str, scene: &Scene) -> Result<Simulation, Failure> {
-    let factor = (ENOUGH / scene.estimate().eulerian as f64).sqrt();
+    let factor = (ENOUGH / scene.estimate().carriers() as f64).sqrt();
     if factor < 1.0
         && let Ok(simulation) = scene_choice::build(argument, Simulation::builder().resolution(factor))
     {

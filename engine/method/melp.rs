@@ -64,7 +64,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
     plan.add(Stage::Geometry, "measure thickness", measure::measure_thickness, liquid());
     plan.add(Stage::Geometry, "measure gas pressure", measure::measure_pressure, always());
-    plan.add(Stage::Forces, "clear external forces", forces::clear, always());
+    plan.add(Stage::Forces, "clear external forces", forces::clear::<EulerianParticle>, always());
     plan.add(Stage::Forces, "gravity", forces::pull_by_gravity, Requires::component::<Gravity>("gravity"));
     plan.add(Stage::Forces, "hold closed films up", forces::hold_up, Requires::component::<Hover>("hover"));
     plan.add(Stage::Forces, "wind", forces::drag_by_wind, Requires::component::<Wind>("a wind"));

@@ -9,6 +9,7 @@
 //! A resumed run is registered and assembled alike, but its rows and state come from a checkpoint: what `discretise` makes must be
 //! registered columns and registered state, and constants of the scene belong into `register`.
 
+pub mod geometric_flow;
 pub mod melp;
 
 use std::error::Error;
@@ -36,7 +37,7 @@ pub struct Method {
 }
 
 /// Every method that can run, in the order of listings.
-pub const METHODS: &[Method] = &[melp::METHOD];
+pub const METHODS: &[Method] = &[melp::METHOD, geometric_flow::METHOD];
 
 /// The method that scene files and the command line call `name`, if it can run.
 #[must_use]

@@ -3,8 +3,9 @@
 //! ```text
 //! manifest.json     what ran, how, and how it ended          observables.csv   one line per step
 //! scene.ron         copy of the scene                        run.log           what happened, with wall times
-//! timings.csv       wall time per stage and step, ms
+//! timings.csv       wall time per stage and step, ms       events.csv        one line per change of topology, of meshes
 //! frames/000000.png ...                                      checkpoints/step-00000120-at-1.200000s.ckpt
+//! animation.png     all frames, at the end of the run        contact_sheet.png twelve of them on one sheet
 //! ```
 
 use std::fs::{self, File, TryLockError};
@@ -18,8 +19,11 @@ use crate::whole_file::write_whole;
 /// File names in a run folder.
 pub(super) const MANIFEST: &str = "manifest.json";
 pub(super) const SCENE: &str = "scene.ron";
+/// Folder of copies of the scene's mesh files.
+pub(super) const MESHES: &str = "meshes";
 pub(super) const OBSERVABLES: &str = "observables.csv";
 pub(super) const TIMINGS: &str = "timings.csv";
+pub(super) const EVENTS: &str = "events.csv";
 const LOG: &str = "run.log";
 const CHECKPOINTS: &str = "checkpoints";
 const FRAMES: &str = "frames";

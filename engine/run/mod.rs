@@ -15,6 +15,7 @@
 //! everything before it, and a resumption cuts the table there and draws later frames again, byte for byte.
 
 mod error;
+mod events;
 mod folder;
 mod frame_sink;
 mod manifest;
@@ -34,7 +35,8 @@ pub use frame_sink::{FrameSink, NoFrames};
 pub use manifest::{Machine, Manifest, RunState};
 pub use reporter::{Progress, Reporter, Silent};
 
-use self::folder::{OBSERVABLES, SCENE, TIMINGS};
+use self::events::EventsTable;
+use self::folder::{EVENTS, MESHES, OBSERVABLES, SCENE, TIMINGS};
 use self::reporter::Progression;
 use self::table::ObservablesTable;
 use self::timings::TimingsTable;
@@ -82,6 +84,7 @@ pub struct Run {
     folder: RunFolder,
     table: ObservablesTable,
     timings: TimingsTable,
+    events: EventsTable,
     manifest: Manifest,
     settings: RunSettings,
     until: f64,
@@ -93,7 +96,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Begins a run: writes the scene's copy and the manifest.
+    /// Begins a run: writes copies of the scene and its mesh files, and the manifest.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -101,6 +104,10 @@ impl Run {
         let until = settings.until.unwrap_or(simulation.scene().header.duration.si());
         let scene = simulation.scene().source().text();
         folder.write(SCENE, scene.as_bytes()).map_err(|cause| file_error(&folder, SCENE, cause))?;
+        for mesh in simulation.scene().mesh_files() {
+            let file = Path::new(MESHES).join(&mesh.path);
+            folder.write(file, mesh.bytes()).map_err(|cause| file_error(&folder, MESHES, cause))?;
+        }
         let manifest = Manifest::new(&simulation, until);
         Self::new(simulation, folder, settings, manifest)
     }
@@ -122,7 +129,7 @@ impl Run {
             cause,
         })?;
         let folder = RunFolder::open(path)?;
-        let builder = || builder().overrides(manifest.overrides.clone());
+        let builder = || builder().overrides(manifest.overrides.clone()).mesh_folder(path.join(MESHES));
         let simulation = newest_state(&folder, &builder, &manifest.scene, &scene)?;
         Self::new(simulation, folder, settings, manifest)
     }
@@ -140,6 +147,8 @@ impl Run {
         let table = table.map_err(|cause| RunError::File { path, cause })?;
         let timings = TimingsTable::open(folder.path(), steps);
         let timings = timings.map_err(|cause| file_error(&folder, TIMINGS, cause))?;
+        let events = EventsTable::open(folder.path(), &simulation, steps);
+        let events = events.map_err(|cause| file_error(&folder, EVENTS, cause))?;
         let mut run = Self {
             until: manifest.until_s,
             wall_before: manifest.wall_s,
@@ -149,6 +158,7 @@ impl Run {
             folder,
             table,
             timings,
+            events,
             manifest,
             settings,
             is_resumed,
@@ -235,6 +245,8 @@ impl Run {
         appended.map_err(|cause| file_error(&self.folder, OBSERVABLES, cause))?;
         let timed = self.timings.append(&report, &self.simulation);
         timed.map_err(|cause| file_error(&self.folder, TIMINGS, cause))?;
+        let noted = self.events.append(&self.simulation);
+        noted.map_err(|cause| file_error(&self.folder, EVENTS, cause))?;
         Ok(report)
     }
 

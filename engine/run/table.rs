@@ -84,7 +84,7 @@ impl ObservablesTable {
 }
 
 /// Step of a line; `None` for the header.
-fn step_of(line: &str) -> Option<u64> {
+pub(super) fn step_of(line: &str) -> Option<u64> {
     line.split(',').next()?.parse().ok()
 }
 

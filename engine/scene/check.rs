@@ -1,41 +1,57 @@
 //! Faults that no single component shows: what is missing, what is too much, what does not fit.
 
 use froth_components::authored::film::Film;
+use froth_components::authored::film_shape::FilmShape;
 use froth_components::authored::method::MethodName;
 use froth_components::authored::shape::Shape;
+use froth_components::authored::wire::Wire;
+use froth_components::quantity::nearest;
 
 use super::error::SceneError;
-use super::estimate::Estimate;
-use super::text::{Tokens, value_of};
+use super::estimate::{Estimate, Rows};
+use super::text::{Tokens, quote, value_of};
 use super::{AuthoredComponent, AuthoredEntity, Scene, honours};
 
 /// Fewer particles than these are no film: the neighbourhoods of a smaller one overlap all around.
 pub const LEAST_PARTICLES: u64 = 60;
 
-/// Least radius of curvature of a shape, in particle spacings: particles cannot be spread below about 1.
+/// Fewer mesh vertices per bubble than these are no film: an icosahedron has as many.
+pub const LEAST_VERTICES: u64 = 12;
+
+/// Least radius of curvature of a shape, in spacings of carriers: particles cannot be spread below about 1.
 pub const LEAST_BEND: f64 = 1.5;
 
 /// Most frames of a scene: at 50 a second, more than five hours to watch.
 pub const MOST_FRAMES: u64 = 1_000_000;
 
 /// Shapes a spherical harmonic makes sense on.
-const ROUND: [&str; 3] = ["Sphere", "Ellipsoid", "HalfSphere"];
+const ROUND: &[&str] = &["Sphere", "Ellipsoid", "HalfSphere"];
 
-/// Components that mean nothing without one of others in the same entity.
+/// Shapes that have one normal everywhere, to be displaced along.
+const SMOOTH: &[&str] = &["Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle", "Hexagon", "Cube", "Catenoid"];
+
+/// What has points that are held, to be moved.
+const HELD: &[&str] = &["Wire", "HalfSphere", "Disc", "Rectangle", "Hexagon", "Catenoid", "WireFrame"];
+
+/// Components that mean nothing without one of others in the same entity. Every shape needs [`Film`].
 const COMPANIONS: &[(&str, &[&str])] = &[
-    ("Film", &Shape::NAMES),
-    ("Sphere", &["Film"]),
-    ("Ellipsoid", &["Film"]),
-    ("HalfSphere", &["Film"]),
-    ("Disc", &["Film"]),
-    ("Rectangle", &["Film"]),
-    ("Hexagon", &["Film"]),
-    ("Bumps", &Shape::NAMES),
-    ("HarmonicMode", &ROUND),
+    ("Film", &FilmShape::NAMES),
+    ("Bumps", SMOOTH),
+    ("HarmonicMode", ROUND),
     ("Drift", &["Film"]),
     ("Spin", &["Film"]),
     ("Swirl", &["Film"]),
+    ("Moves", HELD),
+    ("Volumes", &["Film"]),
 ];
+
+/// What a component needs beside it; nothing where it stands alone.
+fn companions(component: &str) -> Option<&'static [&'static str]> {
+    if FilmShape::NAMES.contains(&component) {
+        return Some(&["Film"]);
+    }
+    COMPANIONS.iter().find(|(name, _)| *name == component).map(|(_, needs)| *needs)
+}
 
 impl Scene {
     /// Checks the scene as a whole for its own method, and against `available` bytes of memory
@@ -47,6 +63,8 @@ impl Scene {
         self.check_entities()?;
         self.check_honoured(self.header.method.name())?;
         self.check_liquid()?;
+        self.check_inertia()?;
+        self.check_wires()?;
         self.check_frames()?;
         let estimate = self.estimate();
         self.check_memory(&estimate, available)?;
@@ -96,6 +114,41 @@ impl Scene {
         })
     }
 
+    /// What acts through inertia finds some.
+    fn check_inertia(&self) -> Result<(), SceneError> {
+        if honours::has_inertia(&self.header.method) {
+            return Ok(());
+        }
+        let mut components = self.entities.iter().flat_map(|entity| &entity.components);
+        let idle = components.find(|component| component.is_built_in && honours::needs_inertia(component.name));
+        idle.map_or(Ok(()), |component| {
+            Err(SceneError::NoInertia {
+                component: component.name.to_owned(),
+                file: self.file.clone(),
+                at: self.file.span(component.range.clone()),
+                setting: value_of(self.file.text(), "motion").map(|range| self.file.span(range)),
+            })
+        })
+    }
+
+    /// The film that a wire is to hold exists.
+    fn check_wires(&self) -> Result<(), SceneError> {
+        let names: Vec<&str> = self.films().filter_map(|(film, _)| film.name()).collect();
+        for entity in &self.entities {
+            let Some(wanted) = entity.get::<Wire>().and_then(|wire| wire.holds.as_deref()) else { continue };
+            if !names.contains(&wanted) {
+                return Err(SceneError::UnknownFilm {
+                    found: quote(wanted),
+                    nearest: nearest(wanted, names.iter().copied()).map(str::to_owned),
+                    known: names.iter().map(|name| quote(name)).collect(),
+                    file: self.file.clone(),
+                    at: self.file.span(entity.range_of(&["Wire"])),
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// The frames can be counted, named and kept.
     fn check_frames(&self) -> Result<(), SceneError> {
         let frames = self.header.duration.si() * self.header.frames_per_second.si();
@@ -120,7 +173,7 @@ impl Scene {
     }
 
     fn check_shapes(&self, entity: &AuthoredEntity) -> Result<(), SceneError> {
-        let mut shapes = entity.components.iter().filter(|component| Shape::NAMES.contains(&component.name));
+        let mut shapes = entity.components.iter().filter(|component| FilmShape::NAMES.contains(&component.name));
         let (Some(first), Some(second)) = (shapes.next(), shapes.next()) else { return Ok(()) };
         Err(SceneError::SeveralShapes {
             first_shape: first.name.to_owned(),
@@ -133,12 +186,8 @@ impl Scene {
 
     fn check_companions(&self, entity: &AuthoredEntity) -> Result<(), SceneError> {
         let has_any = |needs: &[&str]| entity.components.iter().any(|component| needs.contains(&component.name));
-        let needs_of = |component: &AuthoredComponent| {
-            COMPANIONS
-                .iter()
-                .find(|(name, _)| component.is_built_in && *name == component.name)
-                .map(|(_, needs)| *needs)
-        };
+        let needs_of =
+            |component: &AuthoredComponent| component.is_built_in.then(|| companions(component.name)).flatten();
         for component in &entity.components {
             if let Some(needs) = needs_of(component).filter(|needs| !has_any(needs)) {
                 return Err(SceneError::MissingCompanion {
@@ -157,8 +206,7 @@ impl Scene {
             return Ok(());
         }
         Err(SceneError::TooLarge {
-            eulerian: estimate.eulerian,
-            lagrangian: estimate.lagrangian,
+            rows: estimate.rows,
             bytes: estimate.bytes,
             available,
             fitting: estimate.fitting(available),
@@ -168,16 +216,17 @@ impl Scene {
         })
     }
 
-    /// Each film has enough particles, and they can follow its shape.
+    /// Each film has enough carriers, and they can follow its shape.
     fn check_films(&self, estimate: &Estimate) -> Result<(), SceneError> {
         for (entity, shape) in self.films() {
-            let particles = (shape.area() / estimate.spacing.powi(2)).round() as u64;
-            if particles < LEAST_PARTICLES {
+            let (carriers, least) = (estimate.carriers_on(shape.area()), least_carriers(&estimate.rows, &shape));
+            if carriers < least {
                 return Err(SceneError::TooCoarse {
-                    particles,
-                    least: LEAST_PARTICLES,
+                    carriers,
+                    noun: estimate.rows.noun(),
+                    least,
                     spacing: estimate.spacing,
-                    enough: (shape.area() / LEAST_PARTICLES as f64).sqrt(),
+                    enough: estimate.spacing_for(least, shape.area()),
                     factor: None,
                     file: self.file.clone(),
                     at: self.file.span(entity.shape_range()),
@@ -187,6 +236,7 @@ impl Scene {
             if radius < LEAST_BEND * estimate.spacing {
                 return Err(SceneError::TooSharp {
                     radius,
+                    noun: estimate.rows.noun(),
                     spacing: estimate.spacing,
                     enough: radius / LEAST_BEND,
                     factor: None,
@@ -199,7 +249,7 @@ impl Scene {
     }
 
     /// Films with their shapes, in the order of the file.
-    pub fn films(&self) -> impl Iterator<Item = (&AuthoredEntity, Shape)> {
+    pub fn films(&self) -> impl Iterator<Item = (&AuthoredEntity, FilmShape)> {
         self.entities
             .iter()
             .filter(|entity| entity.get::<Film>().is_some())
@@ -213,11 +263,19 @@ impl Scene {
     }
 }
 
+/// Least number of carriers that make a film.
+fn least_carriers(rows: &Rows, shape: &FilmShape) -> u64 {
+    match rows {
+        Rows::Particles { .. } => LEAST_PARTICLES,
+        Rows::Mesh { .. } => LEAST_VERTICES.saturating_mul(shape.bubbles()),
+    }
+}
+
 /// Least radius of curvature of a shape, metres: `c^2 / a` at the tips of an ellipsoid with the longest half axis `a` and the
 /// shortest `c`. The other shapes are as round as they are large, or flat.
-fn least_radius_of_curvature(shape: &Shape) -> f64 {
+fn least_radius_of_curvature(shape: &FilmShape) -> f64 {
     match shape {
-        Shape::Ellipsoid(ellipsoid) => {
+        FilmShape::Single(Shape::Ellipsoid(ellipsoid)) => {
             let radii = ellipsoid.radii.si();
             radii.min_element() * (radii.min_element() / radii.max_element())
         }
@@ -227,8 +285,13 @@ fn least_radius_of_curvature(shape: &Shape) -> f64 {
 
 impl AuthoredEntity {
     /// Where the file gives the shape.
-    fn shape_range(&self) -> std::ops::Range<usize> {
-        let shape = self.components.iter().find(|component| Shape::NAMES.contains(&component.name));
-        shape.map_or(0..0, |component| component.range.clone())
+    pub(super) fn shape_range(&self) -> std::ops::Range<usize> {
+        self.range_of(&FilmShape::NAMES)
+    }
+
+    /// Where the file gives the first component of some names.
+    pub(super) fn range_of(&self, names: &[&str]) -> std::ops::Range<usize> {
+        let named = self.components.iter().find(|component| names.contains(&component.name));
+        named.map_or(0..0, |component| component.range.clone())
     }
 }

@@ -8,9 +8,11 @@ use std::path::PathBuf;
 use miette::{Diagnostic, SourceSpan};
 use thiserror::Error;
 
+use super::estimate::Rows;
 use super::text::SceneText;
 
-/// A fault of a scene file. Codes: `F000x` the file, `F001x` its syntax, `F002x` names, `F003x` values, `F004x` meaning, `F005x` size.
+/// A fault of a scene file. Codes: `F000x` the file, `F001x` its syntax, `F002x` names, `F003x` values, `F004x` meaning, `F005x` size, `F006x`
+/// meshes.
 #[derive(Debug, Error, Diagnostic)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -460,23 +462,63 @@ pub enum SceneError {
         setting: Option<SourceSpan>,
     },
 
-    /// A film of too few particles.
-    #[error("the film would have {particles} particles; fewer than {least} are no film")]
+    /// A component that acts through inertia, under settings that give the film none.
+    #[error("`{component}` is a velocity at the start, and an overdamped film has no inertia to keep it")]
+    #[diagnostic(
+        code(F0045),
+        help("write `motion: Inertial()` into the method, or take `{component}` out of the scene")
+    )]
+    NoInertia {
+        /// The component.
+        component: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("forgotten at once")]
+        at: SourceSpan,
+        /// The setting.
+        #[label("no inertia")]
+        setting: Option<SourceSpan>,
+    },
+
+    /// A wire that holds a film which does not exist.
+    #[error("the wire holds `{found}`, and no film has this name")]
+    #[diagnostic(code(F0046), help("{}", names_help(nearest.as_deref(), "films with a `Name`", known)))]
+    UnknownFilm {
+        /// The name in the file.
+        found: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// Names of all films, in the order of the file.
+        known: Box<[String]>,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The wire.
+        #[label("holds nothing")]
+        at: SourceSpan,
+    },
+
+    /// A film of too few carriers.
+    #[error("the film would have {carriers} {noun}; fewer than {least} are no film")]
     #[diagnostic(
         code(F0050),
         help(
-            "particles are {} apart; write a spacing of {} or less, or more particles{}",
+            "{noun} are {} apart; write a spacing of {} or less, or more {noun}{}",
             length(*spacing),
             length(rounded_down(*enough)),
-            refinement(*factor)
+            refinement(*factor, noun)
         )
     )]
     TooCoarse {
-        /// Particles it would have.
-        particles: u64,
+        /// Carriers it would have.
+        carriers: u64,
+        /// What they are called.
+        noun: &'static str,
         /// Least number that makes sense.
         least: u64,
-        /// Distance between particles, metres.
+        /// Distance between them, metres.
         spacing: f64,
         /// Largest distance that gives enough, metres.
         enough: f64,
@@ -486,36 +528,35 @@ pub enum SceneError {
         #[source_code]
         file: SceneText,
         /// The shape.
-        #[label("{particles} particles on this")]
+        #[label("{carriers} {noun} on this")]
         at: SourceSpan,
     },
 
-    /// More particles than memory.
+    /// More carriers than memory.
     #[error(
-        "the scene needs about {} for {} Eulerian and {} Lagrangian particles; {} is available",
+        "the scene needs about {} for {}; {} is available",
         memory(*bytes),
-        count(*eulerian),
-        count(*lagrangian),
+        all_of(rows),
         memory(*available)
     )]
     #[diagnostic(
         code(F0051),
         help(
-            "write a larger spacing or fewer particles: about {} Eulerian particles fit{}",
+            "write a larger spacing or fewer {}: about {} {} fit{}",
+            rows.noun(),
             count(*fitting),
-            refinement(*factor)
+            rows.carrier_name(),
+            refinement(*factor, rows.noun())
         )
     )]
     TooLarge {
-        /// Eulerian particles.
-        eulerian: u64,
-        /// Lagrangian particles.
-        lagrangian: u64,
+        /// What the films would be made of.
+        rows: Rows,
         /// Memory they need, bytes.
         bytes: u64,
         /// Memory there is, bytes.
         available: u64,
-        /// Eulerian particles that would fit.
+        /// Carriers that would fit.
         fitting: u64,
         /// Factor on the resolution from outside the file.
         factor: Option<f64>,
@@ -543,20 +584,22 @@ pub enum SceneError {
         at: SourceSpan,
     },
 
-    /// A shape that bends more sharply than its particles can follow.
-    #[error("the shape bends with a radius of {}, and its particles are {} apart", length(*radius), length(*spacing))]
+    /// A shape that bends more sharply than its carriers can follow.
+    #[error("the shape bends with a radius of {}, and its {noun} are {} apart", length(*radius), length(*spacing))]
     #[diagnostic(
         code(F0053),
         help(
-            "write a spacing of {} or less, more particles, or a rounder shape{}",
+            "write a spacing of {} or less, more {noun}, or a rounder shape{}",
             length(rounded_down(*enough)),
-            refinement(*factor)
+            refinement(*factor, noun)
         )
     )]
     TooSharp {
         /// Least radius of curvature, metres.
         radius: f64,
-        /// Distance between particles, metres.
+        /// What carriers are called.
+        noun: &'static str,
+        /// Distance between them, metres.
         spacing: f64,
         /// Largest distance that follows the shape, metres.
         enough: f64,
@@ -567,6 +610,158 @@ pub enum SceneError {
         file: SceneText,
         /// The shape.
         #[label("too sharp for the resolution")]
+        at: SourceSpan,
+    },
+
+    /// A mesh file that is not in the scene's folder.
+    #[error("the mesh file `{path}` is not within the scene's own folder")]
+    #[diagnostic(
+        code(F0060),
+        help(
+            "put the file beside the scene or into a folder there, and write its path from the scene: \"meshes/foam.ply\""
+        )
+    )]
+    MeshOutside {
+        /// As the scene gives it.
+        path: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("leads out of the folder")]
+        at: SourceSpan,
+    },
+
+    /// A mesh file that is not there or cannot be read.
+    #[error("the mesh file `{path}` {problem}")]
+    #[diagnostic(code(F0061), help("{help}"))]
+    MeshUnreadable {
+        /// As the scene gives it.
+        path: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        help: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("names the file")]
+        at: SourceSpan,
+    },
+
+    /// A file that is no mesh.
+    #[error("the mesh cannot be read: {message}")]
+    #[diagnostic(
+        code(F0062),
+        help(
+            "a mesh is a Wavefront .obj or a Stanford .ply file of triangles; `froth explain F0062` shows one of each"
+        )
+    )]
+    NotAMesh {
+        /// What is wrong, with the line or the byte where it is.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("no mesh")]
+        at: SourceSpan,
+    },
+
+    /// Films that do not part regions: an edge where the regions around do not match, or a film that ends in the air.
+    #[error("the films do not part one region from another: {message}")]
+    #[diagnostic(
+        code(F0063),
+        help("around each edge, what is behind one film is before the next; a film that ends must end on a wire")
+    )]
+    MeshLabels {
+        /// Which edge, and what does not match.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("open or inconsistent")]
+        at: SourceSpan,
+    },
+
+    /// Faces that are no faces: double, without area, or vertices without any.
+    #[error("the mesh has faces that are none: {message}")]
+    #[diagnostic(
+        code(F0064),
+        help("merge vertices that coincide, then remove double faces, faces without area, and vertices without faces")
+    )]
+    MeshFaces {
+        /// Which faces, and what is wrong.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("double, empty or loose")]
+        at: SourceSpan,
+    },
+
+    /// Films that pass through each other.
+    #[error("films pass through each other: {message}")]
+    #[diagnostic(code(F0065), help("move the films apart, or join them where they meet"))]
+    FilmsCross {
+        /// Which films, and where.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The component.
+        #[label("crosses a film")]
+        at: SourceSpan,
+    },
+
+    /// A wire that passes through a film.
+    #[error("the wire passes through a film: {message}")]
+    #[diagnostic(code(F0066), help("a wire runs along the film that it holds: change its radius or move it"))]
+    WirePierces {
+        /// Where.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The wire.
+        #[label("pierces a film")]
+        at: SourceSpan,
+    },
+
+    /// A wire with no film near it.
+    #[error("the wire holds no film: {message}")]
+    #[diagnostic(
+        code(F0067),
+        help("a wire runs along the film that it holds, nowhere farther from it than an edge of the mesh")
+    )]
+    WireFar {
+        /// How far, and from what.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The wire.
+        #[label("no film here")]
+        at: SourceSpan,
+    },
+
+    /// Volumes for more or fewer bubbles than there are.
+    #[error("the volumes do not fit the bubbles: {message}")]
+    #[diagnostic(
+        code(F0068),
+        help("write one volume for each bubble of the shape, in the order that its type documents")
+    )]
+    VolumesMisfit {
+        /// How many of each.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The shape.
+        #[label("has another number of bubbles")]
         at: SourceSpan,
     },
 }
@@ -614,12 +809,12 @@ impl SceneError {
     }
 }
 
-/// What a factor on the resolution did to the scene's own number of particles.
-fn refinement(factor: Option<f64>) -> String {
+/// What a factor on the resolution did to the scene's own number of carriers.
+fn refinement(factor: Option<f64>, noun: &str) -> String {
     let say = |factor: f64| {
         let times = factor * factor;
         let times = if (0.01..1e6).contains(&times) { times.to_string() } else { format!("{times:.1e}") };
-        format!("; `--resolution {factor}` makes {times} times as many particles as the file says")
+        format!("; `--resolution {factor}` makes {times} times as many {noun} as the file says")
     };
     factor.map(say).unwrap_or_default()
 }
@@ -666,6 +861,16 @@ fn memory(bytes: u64) -> String {
 /// A number of particles as a person says it.
 fn count(number: u64) -> String {
     if number < 10_000_000 { number.to_string() } else { format!("{:.1e}", number as f64) }
+}
+
+/// What films are made of as a person says it.
+fn all_of(rows: &Rows) -> String {
+    match *rows {
+        Rows::Particles { eulerian, lagrangian, .. } => {
+            format!("{} Eulerian and {} Lagrangian particles", count(eulerian), count(lagrangian))
+        }
+        Rows::Mesh { vertices, faces } => format!("{} vertices and {} faces", count(vertices), count(faces)),
+    }
 }
 
 /// Metres as a scene file would have them.

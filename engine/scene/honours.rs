@@ -2,14 +2,21 @@
 //!
 //! What a method cannot honour changes the meaning of a scene, and is an error. Components of the user's own are the user's affair.
 
-use froth_components::authored::method::{MethodChoice, MethodName};
+use froth_components::authored::mesh_shape::MeshShape;
+use froth_components::authored::method::{FilmMotion, MethodChoice, MethodName};
+use froth_components::authored::shape::Shape;
 
-/// What a method without inertia can start from.
-const STATICS: &[&str] =
-    &["Name", "Sphere", "Ellipsoid", "HalfSphere", "Disc", "Rectangle", "Hexagon", "Film", "Bumps", "HarmonicMode"];
+/// What geometric flow honours besides shapes. Its films have thickness, hence weight and colour, but no liquid that flows.
+const BY_GEOMETRIC_FLOW: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Drift", "Gravity"];
+
+/// What takes a mesh, besides [`MeshShape`].
+const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes"];
 
 /// What acts on the liquid within a film alone.
 const ON_LIQUID: &[&str] = &["HeatSource", "Spin", "Swirl"];
+
+/// What acts through inertia alone.
+const ON_INERTIA: &[&str] = &["Drift"];
 
 /// Whether a component has nothing to act on where films have no liquid that flows.
 pub(super) fn needs_liquid(component: &str) -> bool {
@@ -20,22 +27,35 @@ pub(super) fn needs_liquid(component: &str) -> bool {
 pub(super) fn has_liquid(method: &MethodChoice) -> bool {
     match method {
         MethodChoice::Melp(settings) => settings.liquid_per_carrier > 0,
+        MethodChoice::GeometricFlow(_) => false,
         _ => true,
     }
 }
 
-/// Components a method honours; `None` for all of them.
-fn honoured_by(method: MethodName) -> Option<&'static [&'static str]> {
+/// Whether a component has no effect on films without inertia.
+pub(super) fn needs_inertia(component: &str) -> bool {
+    ON_INERTIA.contains(&component)
+}
+
+/// Whether films have inertia, under a method with its settings.
+pub(super) fn has_inertia(method: &MethodChoice) -> bool {
     match method {
-        MethodName::GeometricFlow => Some(STATICS),
-        _ => None,
+        MethodChoice::GeometricFlow(settings) => matches!(settings.motion, FilmMotion::Inertial(_)),
+        _ => true,
     }
 }
 
 /// Whether a method honours a built-in component.
 #[must_use]
 pub fn honours(method: MethodName, component: &str) -> bool {
-    honoured_by(method).is_none_or(|honoured| honoured.contains(&component))
+    let takes_mesh = MeshShape::NAMES.contains(&component) || ON_MESH.contains(&component);
+    match method {
+        MethodName::Melp => !takes_mesh,
+        MethodName::GeometricFlow => {
+            takes_mesh || Shape::NAMES.contains(&component) || BY_GEOMETRIC_FLOW.contains(&component)
+        }
+        _ => true,
+    }
 }
 
 /// Available methods that honour a built-in component, by their names in scene files.

@@ -12,7 +12,7 @@
 //! )"#;
 //! let scene = Scene::from_text("bubble.ron", text, &AuthoredRegistry::built_in())?;
 //! let estimate = scene.check(available_memory())?;
-//! assert_eq!(estimate.eulerian, 4000);
+//! assert_eq!(estimate.carriers(), 4000);
 //! # Ok::<(), froth::scene::SceneError>(())
 //! ```
 //!
@@ -27,6 +27,9 @@ mod estimate;
 mod file;
 mod header;
 mod honours;
+mod mesh_fault;
+mod mesh_file;
+mod mesh_survey;
 mod parse;
 mod registry;
 mod ron_text;
@@ -37,17 +40,23 @@ use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
+use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::world::World;
-use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Shape, Sphere};
+use froth_components::authored::film_shape::{FilmShape, Parts};
+use froth_components::authored::mesh_shape::MeshFile;
 use froth_components::authored::{Name, PlaceInScene};
 
-pub use check::{LEAST_BEND, LEAST_PARTICLES, MOST_FRAMES};
+pub use check::{LEAST_BEND, LEAST_PARTICLES, LEAST_VERTICES, MOST_FRAMES};
 pub use error::{Place, SceneError};
-pub use estimate::{BOUNDARY_ROWS, BYTES_PER_EULERIAN, BYTES_PER_LAGRANGIAN, Estimate, available_memory};
+pub use estimate::{
+    BOUNDARY_ROWS, BYTES_PER_EULERIAN, BYTES_PER_LAGRANGIAN, BYTES_PER_VERTEX, Estimate, Rows, available_memory,
+};
 pub use file::LONGEST_FILE;
 pub use header::SceneHeader;
 pub use honours::honours;
+pub use mesh_fault::{MeshFault, MeshFaultKind};
+pub use mesh_file::{LONGEST_MESHES, folder_of};
 pub use registry::{AuthoredRegistry, RegisteredComponent};
 pub use ron_text::Block;
 pub use text::SceneText;
@@ -73,18 +82,42 @@ impl Scene {
     /// When the file cannot be read or is no scene. The scene as a whole is checked by [`Scene::check`].
     pub fn from_path(path: impl AsRef<Path>, registry: &AuthoredRegistry) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        Self::from_bytes(&path.display().to_string(), &file::read(path)?, registry)
+        Self::from_path_in(folder_of(path), path, registry)
     }
 
-    /// Reads a scene from bytes, which may be anything. `name` stands for the file in errors.
+    /// Reads a scene file, and its mesh files from a folder other than its own.
     ///
     /// # Errors
-    /// When the bytes are no scene.
-    pub fn from_bytes(name: &str, bytes: &[u8], registry: &AuthoredRegistry) -> Result<Self, SceneError> {
-        parse::scene(&SceneText::new(name, file::text(name, bytes)?), registry)
+    /// As [`Scene::from_path`].
+    pub fn from_path_in(folder: &Path, path: &Path, registry: &AuthoredRegistry) -> Result<Self, SceneError> {
+        Self::from_bytes_in(folder, &path.display().to_string(), &file::read(path)?, registry)
     }
 
-    /// Reads a scene from text. `name` stands for the file in errors.
+    /// Reads a scene from bytes, which may be anything. `name` stands for the file in errors; mesh files are looked for in
+    /// its folder.
+    ///
+    /// # Errors
+    /// When the bytes are no scene, or a mesh file cannot be read.
+    pub fn from_bytes(name: &str, bytes: &[u8], registry: &AuthoredRegistry) -> Result<Self, SceneError> {
+        Self::from_bytes_in(folder_of(Path::new(name)), name, bytes, registry)
+    }
+
+    /// Reads a scene from bytes, and its mesh files from a folder. `name` stands for the file in errors.
+    ///
+    /// # Errors
+    /// As [`Scene::from_bytes`].
+    pub fn from_bytes_in(
+        folder: &Path,
+        name: &str,
+        bytes: &[u8],
+        registry: &AuthoredRegistry,
+    ) -> Result<Self, SceneError> {
+        let mut scene = parse::scene(&SceneText::new(name, file::text(name, bytes)?), registry)?;
+        scene.read_mesh_files(folder)?;
+        Ok(scene)
+    }
+
+    /// Reads a scene from text. `name` stands for the file in errors; mesh files are looked for in its folder.
     ///
     /// # Errors
     /// When the text is no scene.
@@ -110,7 +143,12 @@ impl Scene {
         self.picture.as_ref()
     }
 
-    /// Numbers of particles and memory, without allocating any.
+    /// The mesh files of the scene with their content, in the order of the scene.
+    pub fn mesh_files(&self) -> impl Iterator<Item = &MeshFile> {
+        self.entities.iter().filter_map(|entity| entity.get::<MeshFile>())
+    }
+
+    /// Numbers of carriers and memory, without allocating any.
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate::of(self)
@@ -149,14 +187,8 @@ impl AuthoredEntity {
 
     /// The shape, if the entity has one.
     #[must_use]
-    pub fn shape(&self) -> Option<Shape> {
-        let sphere = self.get::<Sphere>().copied().map(Shape::Sphere);
-        sphere
-            .or_else(|| self.get::<Ellipsoid>().copied().map(Shape::Ellipsoid))
-            .or_else(|| self.get::<HalfSphere>().copied().map(Shape::HalfSphere))
-            .or_else(|| self.get::<Disc>().copied().map(Shape::Disc))
-            .or_else(|| self.get::<Rectangle>().copied().map(Shape::Rectangle))
-            .or_else(|| self.get::<Hexagon>().copied().map(Shape::Hexagon))
+    pub fn shape(&self) -> Option<FilmShape> {
+        FilmShape::of(self)
     }
 
     fn spawn(&self, place: PlaceInScene, world: &mut World) -> Entity {
@@ -165,6 +197,12 @@ impl AuthoredEntity {
             component.value.insert_into(&mut entity);
         }
         entity.id()
+    }
+}
+
+impl Parts for AuthoredEntity {
+    fn part<T: Component>(&self) -> Option<&T> {
+        self.get()
     }
 }
 

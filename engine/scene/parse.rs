@@ -8,7 +8,7 @@ use froth_components::authored::method::{MethodChoice, MethodName};
 use froth_components::authored::resolution::Resolution;
 use froth_components::quantity::{Rate, Time, nearest, range};
 use ron::value::RawValue;
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
 use super::error::SceneError;
 use super::header::SceneHeader;
@@ -36,8 +36,8 @@ struct SceneFile<'a> {
     liquid: Liquid,
     #[serde(default)]
     atmosphere: Atmosphere,
-    #[serde(default)]
-    maximum_step: Option<LongestStep>,
+    #[serde(default, deserialize_with = "range::positive_if_given")]
+    maximum_step: Option<Time>,
     #[serde(borrow, default)]
     picture: Option<&'a RawValue>,
     #[serde(borrow)]
@@ -46,15 +46,6 @@ struct SceneFile<'a> {
 
 fn usual_frame_rate() -> Rate {
     Rate::from_si(50.0)
-}
-
-/// A positive time.
-struct LongestStep(Time);
-
-impl<'de> Deserialize<'de> for LongestStep {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        range::positive(deserializer).map(Self)
-    }
 }
 
 /// Reads a scene from its text.
@@ -77,7 +68,7 @@ pub(super) fn scene(file: &SceneText, registry: &AuthoredRegistry) -> Result<Sce
         seed: parsed.seed,
         liquid: parsed.liquid,
         atmosphere: parsed.atmosphere,
-        maximum_step: parsed.maximum_step.map(|step| step.0),
+        maximum_step: parsed.maximum_step,
     };
     let entities = parsed.entities.iter().map(|raws| entity(raws.iter().map(|raw| block(raw, "")), registry));
     Ok(Scene {

@@ -1,6 +1,6 @@
 //! From a scene to a [`Simulation`]: overrides, plugged-in components and columns, then registration, discretisation, assembly.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bevy_ecs::component::Component;
 use bevy_ecs::world::World;
@@ -22,8 +22,8 @@ use super::error::BuildError;
 use super::frames::Frames;
 use super::{STEP_LENGTH, Simulation, scene_hash};
 use crate::checkpoint;
-use crate::method::{METHODS, Method, method};
-use crate::scene::{AuthoredRegistry, Scene, SceneHeader, available_memory};
+use crate::method::{DiscretiseError, METHODS, Method, method};
+use crate::scene::{AuthoredRegistry, MeshFault, Scene, SceneError, SceneHeader, available_memory, folder_of};
 
 /// What replaces values of a scene file. Part of the identity of a run: another override is another run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -44,6 +44,7 @@ pub struct SimulationBuilder {
     overrides: Overrides,
     method: Option<Method>,
     columns: Vec<fn(&mut World)>,
+    mesh_folder: Option<PathBuf>,
 }
 
 impl SimulationBuilder {
@@ -96,12 +97,21 @@ impl SimulationBuilder {
         self
     }
 
+    /// Looks for the scene's mesh files in this folder, and not in the scene's own.
+    #[must_use]
+    pub fn mesh_folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.mesh_folder = Some(folder.into());
+        self
+    }
+
     /// Reads a scene file and makes its particles.
     ///
     /// # Errors
     /// When the file is no scene, or the scene cannot be simulated.
     pub fn build(self, path: impl AsRef<Path>) -> Result<Simulation, BuildError> {
-        let scene = Scene::from_path(path, &self.authored)?;
+        let path = path.as_ref();
+        let folder = self.mesh_folder.as_deref().unwrap_or_else(|| folder_of(path));
+        let scene = Scene::from_path_in(folder, path, &self.authored)?;
         self.begin(scene)
     }
 
@@ -110,7 +120,7 @@ impl SimulationBuilder {
     /// # Errors
     /// When the text is no scene, or the scene cannot be simulated.
     pub fn build_from_text(self, name: &str, text: &str) -> Result<Simulation, BuildError> {
-        let scene = Scene::from_text(name, text, &self.authored)?;
+        let scene = self.read(name, text)?;
         self.begin(scene)
     }
 
@@ -119,7 +129,7 @@ impl SimulationBuilder {
     /// # Errors
     /// When the text is no scene, or the checkpoint is damaged or of another run.
     pub fn restore(self, name: &str, text: &str, checkpoint: impl AsRef<Path>) -> Result<Simulation, BuildError> {
-        let scene = Scene::from_text(name, text, &self.authored)?;
+        let scene = self.read(name, text)?;
         let mut simulation = self.prepare(scene)?;
         checkpoint::load(&mut simulation, checkpoint.as_ref())?;
         Ok(simulation)
@@ -127,15 +137,21 @@ impl SimulationBuilder {
 
     /// Reads a scene from text and makes everything but its particles, which tells whether the rest could be made.
     pub(crate) fn build_without_particles(self, name: &str, text: &str) -> Result<Simulation, BuildError> {
-        let scene = Scene::from_text(name, text, &self.authored)?;
+        let scene = self.read(name, text)?;
         self.prepare(scene)
+    }
+
+    fn read(&self, name: &str, text: &str) -> Result<Scene, SceneError> {
+        let folder = self.mesh_folder.as_deref().unwrap_or_else(|| folder_of(Path::new(name)));
+        Scene::from_bytes_in(folder, name, text.as_bytes(), &self.authored)
     }
 
     fn begin(self, scene: Scene) -> Result<Simulation, BuildError> {
         let mut simulation = self.prepare(scene)?;
         let discretise = simulation.method.discretise;
         let world = &mut simulation.world;
-        rayon::scope(|_| discretise(world)).map_err(BuildError::Discretise)?;
+        let discretised = rayon::scope(|_| discretise(world));
+        discretised.map_err(|error| explain(&simulation.scene, error))?;
         Ok(simulation)
     }
 
@@ -175,6 +191,14 @@ impl SimulationBuilder {
             method: name.on_command_line(),
             available: METHODS.iter().map(|method| method.name).collect(),
         })
+    }
+}
+
+/// A fault of an authored entity's mesh is a fault of the scene file.
+fn explain(scene: &Scene, error: DiscretiseError) -> BuildError {
+    match error.downcast::<MeshFault>() {
+        Ok(fault) => BuildError::Scene(scene.explain(&fault)),
+        Err(other) => BuildError::Discretise(other),
     }
 }
 

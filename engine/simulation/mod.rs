@@ -303,6 +303,7 @@ impl Simulation {
 fn scene_hash(scene: &Scene, overrides: &Overrides) -> u64 {
     let mut hash = Xxh3::new();
     hash.update(scene.source().text().as_bytes());
+    scene.mesh_files().for_each(|mesh| hash.update(mesh.bytes()));
     hash.update(format!("{overrides:?}").as_bytes());
     hash.digest()
 }

@@ -10,19 +10,29 @@
 //! `froth verify` prints the findings; `tests/laws.rs` asserts the quick ones.
 
 mod breathing;
+mod catenoid;
+mod clusters;
+mod coalescence;
 mod curvature;
+mod double_bubble;
 mod drainage;
 mod elastic_shape_modes;
 mod equilibrium_disc;
 pub mod finding;
+mod foam;
+mod frames;
 mod marangoni_wave;
+mod mesh_run;
+mod minima;
 mod operators;
 pub mod oscillation;
+mod pulled_double_bubble;
 mod redistribution;
 mod resting_bubble;
 mod sampled;
 mod scene_run;
 mod shape_modes;
+mod sphere_volume;
 mod transfers;
 mod young_laplace;
 
@@ -139,6 +149,60 @@ pub const LAWS: &[Law] = &[
         summary: "a bubble at rest at 1 atm, with the mass of a real film, stays at rest",
         source: "the volume is constant, speeds decay, no limit is reached",
         measure: resting_bubble::measure,
+    },
+    Law {
+        name: "sphere_volume",
+        summary: "a bubble on a mesh that is remeshed in every step keeps its volume",
+        source: "dV/dt = 0 over 1000 steps",
+        measure: sphere_volume::measure,
+    },
+    Law {
+        name: "double_bubble",
+        summary: "two unequal bubbles rest at 120 degrees, with pressures 4 sigma/R and the least area",
+        source: "Plateau 1873, Laplace 1806; closed form",
+        measure: double_bubble::measure,
+    },
+    Law {
+        name: "catenoid",
+        summary: "a film between two rings of radius R holds up to a gap of 1.3254868 R, and pinches off beyond",
+        source: "Lindelof 1863; closed form",
+        measure: catenoid::measure,
+    },
+    Law {
+        name: "coalescence",
+        summary: "two equal bubbles that touch become a double bubble of area 27 pi R^2/4",
+        source: "Ishida 2017; Deng 2022, fig. 13",
+        measure: coalescence::measure,
+    },
+    Law {
+        name: "pulled_double_bubble",
+        summary: "a double bubble that two rings pull apart becomes two bubbles of the same volumes",
+        source: "Da 2015, fig. 7",
+        measure: pulled_double_bubble::measure,
+    },
+    Law {
+        name: "foam_lattice",
+        summary: "cubes in a block, four films at an edge, become a foam with three",
+        source: "Plateau 1873; Da 2014",
+        measure: foam::measure_lattice,
+    },
+    Law {
+        name: "bursting_foam",
+        summary: "bubbles of a foam keep their volumes while others burst",
+        source: "Ishida 2017",
+        measure: foam::measure_bursts,
+    },
+    Law {
+        name: "frames",
+        summary: "films in frames of wire come to the least area next to where they start",
+        source: "Surface Evolver, assets/evolver",
+        measure: frames::measure,
+    },
+    Law {
+        name: "clusters",
+        summary: "unequal triple and quadruple bubbles have the least area and the pressures that go with it",
+        source: "Surface Evolver, assets/evolver",
+        measure: clusters::measure,
     },
 ];
 

@@ -1,0 +1,133 @@
+//! Two bubbles of unequal volumes: Plateau's angles, Laplace's pressures, and the least area.
+//!
+//! # Equation
+//! Outer radii `R1`, `R2`, wall `1/Rw = 1/R2 - 1/R1`, centres `d` apart with `d^2 = R1^2 + R2^2 - R1 R2`, films at 120 degrees;
+//! pressures `4 sigma/R1`, `4 sigma/R2`. The volumes follow from the caps.
+//!
+//! # Discretisation
+//! The scene starts with equal bubbles, and gas goes in and out until they have the exact volumes: the wall bulges and the circle
+//! where the films meet moves over several edges. Flat faces that enclose the exact volume have an area in excess of second order.
+//!
+//! # Limits
+//! At rest the areas of flat faces are in balance, and edges along a border differ in length: the slopes of films next to it are good
+//! to the first order. Angles averaged along the border are within 0.2 degrees at `R/20`, at single vertices within 0.7.
+
+use froth_components::authored::mesh_shape::{DoubleBubble, Measured, TwoRadii};
+use froth_components::authored::shape::Place;
+use froth_components::quantity::Direction;
+use froth_surface::Region;
+use froth_surface::calculus::angles::{BorderAngles, border_angles, border_deviation};
+use froth_surface::calculus::borders::Borders;
+use froth_surface::invariants::Violation;
+
+use super::finding::{Finding, Refinement};
+use super::mesh_run::{MeshRun, unbroken};
+use super::scene_run::SceneRun;
+use super::{Effort, LawError};
+
+const RADII: [f64; 2] = [0.05, 0.03];
+const TENSION: f64 = 0.03;
+/// Nothing moves any more, s.
+const END: f64 = 1.5;
+
+/// The bubble at rest at one resolution.
+struct Rest {
+    area: f64,
+    pressures: [f64; 2],
+    volume_error: f64,
+    mean_angle: f64,
+    worst_angle: f64,
+    /// The angle in the outside air and in each bubble, averaged along the border, degrees.
+    angles: [f64; 3],
+    violation: Option<Violation>,
+}
+
+pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
+    // The angles are asked for at R/20.
+    let parts: &[f64] = effort.choose(&[5.0, 7.0, 10.0], &[10.0, 20.0, 40.0]);
+    let rests: Vec<Rest> = parts.iter().map(|parts| rest(RADII[0] / parts)).collect::<Result<_, LawError>>()?;
+    let order = |error: &dyn Fn(&Rest) -> f64| -> Refinement {
+        parts.iter().zip(&rests).map(|(parts, rest)| (1.0 / parts, error(rest))).collect()
+    };
+    let exact = exact().area();
+    let at = effort.choose(2, 1);
+    let (rest, coarseness) = (&rests[at], 20.0 / parts[at]);
+    let angle = 0.5 * coarseness;
+    let label = |what: &str| format!("{what} at R/{}", parts[at]);
+    let mut findings = vec![
+        Finding::relative(label("area, m^2,"), exact, rest.area, 1e-3 * coarseness * coarseness)
+            .converging(&order(&|rest| rest.area / exact - 1.0), 1.7),
+        Finding::vanishing(label("angles of the films less 120 degrees, mean size, degrees,"), rest.mean_angle, angle)
+            .converging(&order(&|rest| rest.mean_angle), 0.5),
+        Finding::vanishing(
+            label("angles of the films less 120 degrees, extreme, degrees,"),
+            rest.worst_angle,
+            1.5 * angle,
+        ),
+        Finding::vanishing(label("largest error of a volume, relative,"), rest.volume_error, 1e-6),
+        unbroken(rests.iter().map(|rest| rest.violation.clone())),
+    ];
+    findings.extend([0, 1, 2].map(|region| {
+        let what = label(&format!("angle in region {region} along the border, degrees,"));
+        Finding::relative(what, 120.0, rest.angles[region], angle / 120.0)
+    }));
+    findings.extend([0, 1].map(|k| {
+        let pressure = 4.0 * TENSION / RADII[k];
+        let what = label(&format!("excess pressure in bubble {}, Pa,", k + 1));
+        Finding::relative(what, pressure, rest.pressures[k], 2e-3 * coarseness * coarseness)
+            .converging(&order(&|rest| rest.pressures[k] / pressure - 1.0), 1.5)
+    }));
+    Ok(findings)
+}
+
+fn exact() -> DoubleBubble {
+    DoubleBubble { centre: Place::ZERO, axis: Direction::X, radii: TwoRadii::from_si(RADII[0], RADII[1]) }
+}
+
+fn rest(edge: f64) -> Result<Rest, LawError> {
+    let scene = SceneRun::of("double_bubble").with("Spacing(\"2.5 mm\")", &format!("Spacing({edge})"));
+    let mut run = MeshRun::at(&scene, END)?;
+    let surface = run.surface();
+    let measured = border_angles(&surface, &Borders::new(&surface));
+    let angles = border_deviation(&measured).unwrap_or_default();
+    Ok(Rest {
+        area: run.area(),
+        pressures: [1, 2].map(|k| run.observed(&format!("excess_pressure_{k}"))),
+        volume_error: run.observed("volume_error"),
+        mean_angle: angles.mean.to_degrees(),
+        worst_angle: angles.above.max(-angles.below).to_degrees(),
+        angles: [0, 1, 2].map(|region| along_border(&measured, Region(region)).to_degrees()),
+        violation: run.violation(),
+    })
+}
+
+/// Mean angle in a region, weighted by length of border, radians.
+fn along_border(measured: &[BorderAngles], region: Region) -> f64 {
+    let parts = measured.iter().flat_map(|at| at.angles.map(|(within, angle)| (within, angle, at.length)));
+    let parts = parts.filter(|(within, ..)| *within == region);
+    let (sum, length) =
+        parts.fold((0.0, 0.0), |(sum, whole), (_, angle, length)| (sum + angle * length, whole + length));
+    sum / length
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn the_scene_asks_for_the_volumes_of_the_exact_bubbles() {
+        let ([first, second], [low, high]) = (RADII, exact().heights());
+        // Caps on the plane of the circle, and the cap between that plane and the wall, which bulges into the first bubble.
+        let cap = |r: f64, h: f64| PI * h * h * (3.0 * r - h) / 3.0;
+        let wall = 1.0 / exact().wall_curvature();
+        let bulge = cap(wall, wall - (wall * wall - exact().junction_radius().powi(2)).sqrt());
+        let volumes = [cap(first, first - low) - bulge, cap(second, second + high) + bulge];
+        let mut run = MeshRun::begin(&SceneRun::of("double_bubble")).unwrap();
+        run.advance_to(0.31).unwrap();
+        for (volume, exact) in run.volumes::<2>().into_iter().zip(volumes) {
+            assert!((volume / exact - 1.0).abs() < 1e-6, "{volume} for {exact}");
+        }
+    }
+}

@@ -197,6 +197,20 @@ fn check_says_what_would_be_built() {
 }
 
 #[test]
+fn check_says_how_large_a_mesh_would_be() {
+    let folder = folder();
+    let scene = r#"Scene(title: "A foam", method: GeometricFlow(time_step: "1 ms"), resolution: Spacing("5 mm"), duration: 1,
+        entities: [ [ Lattice(cell: "1 cm", counts: (5, 5, 5)), Film(thickness: Uniform("400 nm")) ] ])"#;
+    fs::write(folder.path().join("foam.ron"), scene).unwrap();
+    let output = output(folder.path(), &["check", "foam.ron"]);
+    assert_eq!(exit_code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("  mesh       2078 vertices, 4156 faces; edges of 5.000 mm"), "{text}");
+    assert!(text.contains("  method     geometric-flow"), "{text}");
+    assert!(text.contains("1000 or more, none longer than 1.000 ms"), "{text}");
+}
+
+#[test]
 fn explain_says_what_runs_and_why() {
     let folder = folder();
     let text = stdout(&output(folder.path(), &["explain", "small.ron"]));

@@ -36,4 +36,13 @@ laws! {
     a_drained_film_is_exponential = "drainage";
     an_uneven_disc_evens_out = "equilibrium_disc";
     a_bubble_at_rest_stays_at_rest = "resting_bubble";
+    a_bubble_keeps_its_volume_while_its_mesh_changes = "sphere_volume";
+    unequal_bubbles_meet_at_120_degrees_with_the_least_area = "double_bubble";
+    a_catenoid_holds_up_to_the_widest_gap = "catenoid";
+    two_bubbles_that_touch_become_a_double_bubble = "coalescence";
+    a_double_bubble_that_is_pulled_apart_becomes_two_bubbles = "pulled_double_bubble";
+    a_lattice_of_cubes_becomes_a_foam = "foam_lattice";
+    bubbles_keep_their_volumes_while_others_burst = "bursting_foam";
+    films_in_frames_come_to_the_least_area = "frames";
+    unequal_clusters_have_the_least_area_and_its_pressures = "clusters";
 }

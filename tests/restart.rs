@@ -77,6 +77,27 @@ fn a_run_that_stops_at_any_step_goes_on_bit_for_bit() {
 }
 
 #[test]
+fn a_foam_that_stops_goes_on_bit_for_bit() {
+    let parent = tempfile::tempdir().unwrap();
+    let foam = |name: &str, settings: RunSettings| {
+        let simulation = Simulation::builder().build_from_text("foam.ron", common::FOAM).unwrap();
+        Run::begin(simulation, RunFolder::create(&parent.path().join(name)).unwrap(), settings).unwrap()
+    };
+    foam("whole", RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
+    let whole = parent.path().join("whole");
+    for step in [1, 4, 9] {
+        let (name, settings) = (format!("stopped-{step}"), RunSettings::default());
+        let mut stop = StopAfter::step(step, &settings);
+        let end = foam(&name, settings).drive(&mut draw, &mut stop).unwrap();
+        assert!(matches!(end, RunEnd::Stopped { .. }), "{step}");
+        let folder = parent.path().join(name);
+        let mut run = Run::resume(&folder, Simulation::builder, RunSettings::default()).unwrap();
+        run.drive(&mut draw, &mut Silent).unwrap();
+        assert_same_results(&folder, &whole);
+    }
+}
+
+#[test]
 fn a_run_that_stops_at_every_step_goes_on_bit_for_bit() {
     let parent = tempfile::tempdir().unwrap();
     let whole = whole(&parent);

@@ -7,12 +7,14 @@ use froth_components::authored::method::MethodName;
 /// Enough for every mended scene, and too little for a trillion particles, bytes.
 const MEMORY: u64 = 8 << 30;
 
-/// Faults of a file or of a user's program, which no text shows.
-const WITHOUT_SCENES: [&str; 6] = ["F0001", "F0002", "F0004", "F0005", "F0006", "F0036"];
+/// Faults of a file or of a user's program, which no text shows, and of a mesh, which only making it shows.
+const WITHOUT_SCENES: [&str; 12] =
+    ["F0001", "F0002", "F0004", "F0005", "F0006", "F0036", "F0063", "F0064", "F0065", "F0066", "F0067", "F0068"];
 
 /// What the command line does: read, check for the method, check as a whole.
 fn check(text: &str, option: Option<&str>) -> Result<(), SceneError> {
-    let scene = Scene::from_text("page.ron", text, &AuthoredRegistry::built_in())?;
+    // The folder of the mesh files that pages speak of.
+    let scene = Scene::from_text("tests/meshes/page.ron", text, &AuthoredRegistry::built_in())?;
     if let Some(name) = option {
         let method = MethodName::ALL.into_iter().find(|method| method.on_command_line() == name);
         scene.check_honoured(method.unwrap_or_else(|| panic!("no method {name}")))?;

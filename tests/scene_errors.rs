@@ -4,8 +4,12 @@
 
 use std::fs;
 
+use froth::Simulation;
 use froth::errors::error_page;
-use froth::scene::{AuthoredRegistry, Scene, SceneError};
+use froth::method::{Method, melp};
+use froth::scene::{AuthoredRegistry, MeshFault, MeshFaultKind, Scene, SceneError};
+use froth::simulation::BuildError;
+use froth_components::authored::PlaceInScene;
 use froth_components::authored::method::MethodName;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
@@ -30,6 +34,25 @@ const SCENE: &str = r#"Scene(
     ],
 )
 "#;
+
+const FOAM: &str = r#"Scene(
+    title: "Bubbles",
+    method: GeometricFlow(cfl: 0.25),
+    resolution: Spacing("2 mm"),
+    duration: "2 s",
+    entities: [
+        [ Name("pair"), DoubleBubble(radii: ("2 cm", "3 cm")), Film(thickness: Uniform("400 nm")) ],
+        [ Wire(path: Ring(axis: (1, 0, 0), radius: "1 cm"), holds: "pair"), Moves(velocity: (0.01, 0, 0)) ],
+        [ Burst(every: "1 s", order: Sequence([2, 1])) ],
+    ],
+)
+"#;
+
+/// The foam with one piece replaced.
+fn foam(piece: &str, by: &str) -> String {
+    assert_eq!(FOAM.matches(piece).count(), 1, "`{piece}` must be in the scene once");
+    FOAM.replace(piece, by)
+}
 
 /// The scene with one piece replaced.
 fn broken(piece: &str, by: &str) -> String {
@@ -130,6 +153,36 @@ faults! {
     a_resolution_too_coarse: broken("Particles(4000)", "Spacing(\"5 cm\")");
     a_trillion_particles: broken("4000", "1000000000000");
     a_trillion_particles_as_a_float: broken("4000", "1e12");
+
+    a_step_of_a_whole_edge: foam("cfl: 0.25", "cfl: 1.0");
+    an_unknown_motion: foam("cfl: 0.25", "motion: Overdamp()");
+    a_mobility_of_a_viscosity: foam("cfl: 0.25", "motion: Overdamped(mobility: \"1 mm^2/s\")");
+    a_massless_film: foam("cfl: 0.25", "motion: Inertial(mass: PerArea(0))");
+    a_time_step_of_nothing: foam("cfl: 0.25", "time_step: \"0 s\"");
+    edges_that_split_into_edges_too_short: foam("cfl: 0.25", "remesh: Remesh(shortest: 0.9)");
+    films_that_touch_across_an_edge: foam("cfl: 0.25", "remesh: Remesh(snap: 0.5)");
+    one_radius_for_two: foam("(\"2 cm\", \"3 cm\")", "(\"2 cm\")");
+    a_negative_radius_of_two: foam("\"3 cm\"", "\"-3 cm\"");
+    a_lattice_of_half_a_cell: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "Lattice(cell: 0.01, counts: (5, 5, 0.5))");
+    a_packing_of_a_million: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "Packing(count: 1e6, radius: 0.01)");
+    an_unknown_frame: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "WireFrame(kind: Icosahedron, edge: 0.01)");
+    a_wire_of_one_point: foam("Ring(axis: (1, 0, 0), radius: \"1 cm\")", "Line(points: [(0, 0, 0)])");
+    a_wire_that_holds_nothing: foam("holds: \"pair\"", "holds: \"pear\"");
+    a_move_of_nothing_that_is_held: foam("Name(\"pair\")", "Moves(velocity: (1, 0, 0)), Name(\"pair\")");
+    a_burst_of_the_outside: foam("[2, 1]", "[2, 0]");
+    a_burst_at_once_and_always: foam("every: \"1 s\"", "every: 0");
+    a_drift_without_inertia: foam("Name(\"pair\")", "Name(\"pair\"), Drift((1, 0, 0))");
+    a_swirl_on_a_mesh: foam("Name(\"pair\")", "Name(\"pair\"), Swirl(speed: 1)");
+    a_mesh_shape_of_particles: foam("GeometricFlow(cfl: 0.25)", "Melp()");
+    a_foam_too_coarse: foam("Spacing(\"2 mm\")", "Vertices(20)");
+    a_foam_too_fine: foam("Spacing(\"2 mm\")", "Spacing(\"2 um\")");
+    a_mesh_file_above: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"../foam.ply\")");
+    a_mesh_file_at_the_root: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"/etc/passwd\")");
+    a_mesh_file_that_is_a_folder: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"tests\")");
+    a_mesh_file_with_a_slip: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"tests/meshes/tetrahedrn.obj\")");
+    a_mesh_file_of_another_kind: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"Cargo.toml\")");
+    a_mesh_file_with_a_bad_row: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"tests/meshes/no_mesh.obj\")");
+
     a_spacing_of_an_atom: broken("Particles(4000)", "Spacing(\"0.1 nm\")");
 }
 
@@ -175,6 +228,53 @@ fn a_field_that_another_method_cannot_honour() {
     scene.check_honoured(MethodName::Melp).unwrap();
     let error = scene.check_honoured(MethodName::GeometricFlow).unwrap_err();
     insta::assert_snapshot!("a_field_that_another_method_cannot_honour", shown(&error));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_mesh_file_that_links_out_of_the_folder() {
+    let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let mesh = elsewhere.path().join("foam.obj");
+    fs::copy("tests/meshes/tetrahedron.obj", &mesh).unwrap();
+    let path = folder.path().join("scene.ron");
+    fs::write(&path, foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"foam.obj\")")).unwrap();
+    std::os::unix::fs::symlink(&mesh, folder.path().join("foam.obj")).unwrap();
+    let error = Scene::from_path(&path, &AuthoredRegistry::built_in()).unwrap_err();
+    assert_eq!(error.stable_code(), "F0060");
+    fs::remove_file(folder.path().join("foam.obj")).unwrap();
+    fs::copy(&mesh, folder.path().join("foam.obj")).unwrap();
+    Scene::from_path(&path, &AuthoredRegistry::built_in()).unwrap().check(MEMORY).unwrap();
+}
+
+#[test]
+fn a_fault_of_a_mesh_points_at_its_shape_or_wire() {
+    let scene = Scene::from_text("scene.ron", FOAM, &AuthoredRegistry::built_in()).unwrap();
+    let kinds = [
+        (MeshFaultKind::NotAMesh, 0, "F0062"),
+        (MeshFaultKind::Labels, 0, "F0063"),
+        (MeshFaultKind::Faces, 0, "F0064"),
+        (MeshFaultKind::Crossing, 0, "F0065"),
+        (MeshFaultKind::WirePierces, 1, "F0066"),
+        (MeshFaultKind::WireFar, 1, "F0067"),
+    ];
+    for (kind, entity, code) in kinds {
+        let fault = MeshFault { entity: PlaceInScene(entity), kind, message: "vertex 3 is odd".to_owned() };
+        let error = scene.explain(&fault);
+        assert_eq!((error.stable_code().as_str(), error.place().unwrap().line), (code, 7 + entity as usize));
+        insta::assert_snapshot!(format!("a_fault_of_a_mesh_{code}"), shown(&error));
+    }
+}
+
+#[test]
+fn what_a_method_finds_wrong_with_a_mesh_is_an_error_of_the_scene() {
+    fn refuse(_: &mut bevy_ecs::world::World) -> Result<(), froth::method::DiscretiseError> {
+        let message = "the edge of vertices 1 and 2 has one face".to_owned();
+        Err(Box::new(MeshFault { entity: PlaceInScene(0), kind: MeshFaultKind::Labels, message }))
+    }
+    let method = Method { discretise: refuse, ..melp::METHOD };
+    let built = Simulation::builder().method(method).build_from_text("scene.ron", SCENE);
+    let Err(BuildError::Scene(error)) = built.map(|_| ()) else { panic!("no error of the scene") };
+    assert_eq!((error.stable_code().as_str(), error.place().unwrap().line), ("F0063", 10));
 }
 
 #[test]

@@ -2,15 +2,22 @@
 
 use bevy_ecs::component::Component;
 use bevy_ecs::world::World;
-use froth::scene::{AuthoredRegistry, Scene};
+use froth::scene::{AuthoredRegistry, Rows, Scene};
+use froth_components::authored::burst::{Burst, BurstOrder};
 use froth_components::authored::field::{Gravity, Hover};
 use froth_components::authored::film::{Film, SurfactantField, ThicknessField};
+use froth_components::authored::film_shape::FilmShape;
 use froth_components::authored::liquid::{Atmosphere, Liquid};
-use froth_components::authored::method::{AirInertia, Gas, MelpSettings, MethodChoice};
+use froth_components::authored::mesh_shape::{MeshFile, MeshShape};
+use froth_components::authored::method::{
+    AirInertia, Contact, FilmMotion, Gas, GeometricFlowSettings, Mass, MelpSettings, MethodChoice, Overdamped, Remesh,
+    TensionScheme, VolumeRule,
+};
 use froth_components::authored::perturbation::Bumps;
 use froth_components::authored::shape::Sphere;
+use froth_components::authored::wire::{Wire, WirePath};
 use froth_components::authored::{Name, PlaceInScene};
-use froth_components::quantity::{MassPerArea, Ratio};
+use froth_components::quantity::{MassPerArea, Mobility, Ratio};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -49,8 +56,39 @@ Scene(
 )
 "#;
 
+/// The same for what takes a mesh.
+const EVERYTHING_ON_MESH: &str = r#"
+Scene(
+    title: "Everything on a mesh",
+    method: GeometricFlow(
+        motion: Inertial(mass: PerArea("1 g/m^2"), air: Fixed("2 g/m^2"), damping: "3 1/s"),
+        tension: Explicit, cfl: 0.1, time_step: "1 ms", volume: Free,
+        remesh: Remesh(enabled: true, flips: false, smoothing: false, topology: false, contact: Bounce, snap: 0.2, shortest: 0.4, longest: 1.2),
+    ),
+    resolution: Spacing("1 mm"),
+    duration: "1 s",
+    entities: [
+        [ Name("cube"), Cube(centre: (0, "1 m", 0), side: "2 cm"), Film(thickness: Uniform("500 nm")), Bumps(), Drift((0.1, 0, 0)) ],
+        [ DoubleBubble(axis: (0, 1, 0), radii: ("2 cm", "1 cm")), Film(thickness: Uniform("500 nm")), Name("pair"), Volumes(of: ["30 ml", "5 ml"], within: "0.1 s") ],
+        [ TripleBubble(axis: (0, 1, 0), radius: "1 cm"), Film(thickness: Uniform("500 nm")) ],
+        [ QuadrupleBubble(radius: "1 cm"), Film(thickness: Uniform("500 nm")) ],
+        [ KelvinCells(size: "1 cm", count: 3), Film(thickness: Uniform("500 nm")) ],
+        [ Lattice(cell: "1 cm", counts: (5, 5, 5)), Film(thickness: Uniform("500 nm")) ],
+        [ SphereLattice(radius: "1 cm", gap: "1 mm", counts: (2, 2, 2)), Film(thickness: Uniform("500 nm")) ],
+        [ Packing(count: 30, radius: "1 cm", spread: 0.3, seed: 5), Film(thickness: Uniform("500 nm")) ],
+        [ Catenoid(axis: (0, 1, 0), radius: "3 cm", gap: "2 cm"), Film(thickness: Uniform("500 nm")) ],
+        [ WireFrame(kind: Tetrahedron, edge: "5 cm"), Film(thickness: Uniform("500 nm")), Moves(velocity: (0, 0.1, 0)) ],
+        [ MeshFile(path: "tetrahedron.obj", scale: 0.01, centre: (1, 2, 3)), Film(thickness: Uniform("500 nm")) ],
+        [ Wire(path: Ring(centre: (0, "1 cm", 0), axis: (0, 1, 0), radius: "3 cm"), holds: "pair"), Moves(velocity: [(t: 0, v: (0, 0, 0)), (t: 1, v: (0, 0.01, 0))]) ],
+        [ Wire(path: Line(points: [(0, 0, 0), (0, 0, 1), (0, 1, 1)], closed: true)) ],
+        [ Burst(every: "0.1 s", first: 0.5, order: Sequence([3, 1, 2])) ],
+        [ Burst(every: 1, order: Random(seed: 7)) ], [ Burst(every: 1, order: Smallest) ], [ Burst(every: 1, order: Largest) ],
+    ],
+)
+"#;
+
 fn read(text: &str) -> Scene {
-    Scene::from_text("scene.ron", text, &AuthoredRegistry::built_in())
+    Scene::from_text("tests/meshes/scene.ron", text, &AuthoredRegistry::built_in())
         .unwrap_or_else(|fault| panic!("{fault} at {:?}", fault.place()))
 }
 
@@ -58,7 +96,7 @@ fn read(text: &str) -> Scene {
 fn a_giant_bubble_becomes_components() {
     let scene = read(GIANT_BUBBLE);
     let estimate = scene.check(MEMORY).unwrap();
-    assert_eq!((estimate.eulerian, estimate.lagrangian, estimate.boundary), (4000, 64_000, 0));
+    assert_eq!(estimate.rows, Rows::Particles { eulerian: 4000, lagrangian: 64_000, boundary: 0 });
 
     let mut world = World::new();
     let entities = scene.spawn_into(&mut world);
@@ -85,7 +123,10 @@ fn everything_a_scene_can_say_is_read() {
     assert_eq!(melp.gas, Gas::Adiabatic(Ratio::from_si(1.4)));
     assert_eq!((header.seed, header.duration.si(), header.maximum_step.map(|step| step.si())), (7, 60.0, Some(0.005)));
     assert_eq!(header.liquid.temperature.si(), 298.15);
-    let named: Vec<&str> = scene.entities().iter().flat_map(|entity| entity.component_names()).collect();
+    let on_mesh = read(EVERYTHING_ON_MESH);
+    on_mesh.check(MEMORY).unwrap();
+    let entities = scene.entities().iter().chain(on_mesh.entities());
+    let named: Vec<&str> = entities.flat_map(|entity| entity.component_names()).collect();
     for component in AuthoredRegistry::built_in().iter() {
         assert!(named.contains(&component.name), "{} is not in the scene", component.name);
         assert!(!component.summary.is_empty());
@@ -99,6 +140,71 @@ fn what_is_left_out_has_its_documented_default() {
     assert_eq!((scene.header.liquid, scene.header.atmosphere), (Liquid::default(), Atmosphere::default()));
     assert_eq!((scene.header.frames_per_second.si(), scene.header.seed, scene.header.maximum_step), (50.0, 0, None));
     assert!(scene.picture().is_none());
+}
+
+#[test]
+fn geometric_flow_has_its_documented_defaults() {
+    let text = r#"Scene(title: "", method: GeometricFlow, resolution: Vertices(1e3), duration: 1, entities: [])"#;
+    let MethodChoice::GeometricFlow(flow) = read(text).header.method else { panic!("not geometric flow") };
+    assert_eq!(flow, GeometricFlowSettings::default());
+    assert_eq!(flow.motion, FilmMotion::Overdamped(Overdamped { mobility: Mobility::from_si(0.1) }));
+    assert_eq!((flow.tension, flow.volume), (TensionScheme::Implicit, VolumeRule::Constrained));
+    assert_eq!((flow.cfl.si(), flow.time_step, flow.remesh), (0.25, None, Remesh::default()));
+}
+
+#[test]
+fn everything_of_a_mesh_is_read() {
+    let scene = read(EVERYTHING_ON_MESH);
+    let MethodChoice::GeometricFlow(flow) = scene.header.method else { panic!("{:?}", scene.header.method) };
+    let FilmMotion::Inertial(inertia) = flow.motion else { panic!("{:?}", flow.motion) };
+    assert_eq!(inertia.mass, Mass::PerArea(MassPerArea::from_si(1e-3)));
+    assert_eq!((inertia.air, inertia.damping.si()), (AirInertia::Fixed(MassPerArea::from_si(2e-3)), 3.0));
+    assert_eq!((flow.tension, flow.volume), (TensionScheme::Explicit, VolumeRule::Free));
+    assert_eq!(flow.time_step.map(|step| step.si()), Some(1e-3));
+    assert_eq!((flow.remesh.contact, flow.remesh.flips), (Contact::Bounce, false));
+    let mut world = World::new();
+    let entities = scene.spawn_into(&mut world);
+    let shapes = entities.iter().filter_map(|entity| FilmShape::of(&world.entity(*entity)));
+    assert_eq!(shapes.count(), MeshShape::NAMES.len());
+    let wires: Vec<&Wire> = world.query::<&Wire>().iter(&world).collect();
+    let is_ring = |wire: &Wire| matches!(&wire.path, WirePath::Ring(ring) if ring.radius.si() == 0.03);
+    assert!(wires.len() == 2 && wires.iter().any(|wire| is_ring(wire) && wire.holds.as_deref() == Some("pair")));
+    let mesh = world.query::<&MeshFile>().single(&world).unwrap();
+    assert_eq!(mesh.bytes(), include_bytes!("meshes/tetrahedron.obj"));
+    let shape = FilmShape::Mesh(MeshShape::MeshFile(mesh.clone()));
+    assert!((shape.area() / (1.5 + 0.75_f64.sqrt()) - 1e-4).abs() < 1e-12);
+    assert!((shape.centre() - DVec3::new(1.005, 2.005, 3.005)).length() < 1e-12);
+    let bursts: Vec<&Burst> = world.query::<&Burst>().iter(&world).collect();
+    assert!(matches!(&bursts[0].order, BurstOrder::Sequence(regions) if regions.get() == [3, 1, 2]));
+}
+
+#[test]
+fn the_estimate_of_a_mesh_counts_the_vertices_of_equilateral_triangles() {
+    let lattice = |resolution: &str| {
+        read(&format!(
+            r#"Scene(title: "", method: GeometricFlow(), resolution: {resolution}, duration: 1, entities: [
+            [ Lattice(cell: "1 cm", counts: (5, 5, 5)), Film(thickness: Uniform("400 nm")) ] ])"#
+        ))
+    };
+    // 3 x 6 x 5 x 5 walls of 1 cm^2, and a vertex per sqrt(3)/2 of an edge squared.
+    let vertices = (450.0 / (0.75_f64.sqrt() * 0.25)).round() as u64;
+    let fine = lattice("Spacing(\"5 mm\")");
+    let estimate = fine.check(MEMORY).unwrap();
+    assert_eq!(estimate.rows, Rows::Mesh { vertices, faces: 2 * vertices });
+    assert_eq!(estimate.bytes, vertices * froth::scene::BYTES_PER_VERTEX);
+    let same = lattice(&format!("Vertices({vertices})")).check(MEMORY).unwrap();
+    assert!((same.spacing / 0.005 - 1.0).abs() < 1e-3 && same.carriers() == vertices);
+    assert_eq!(fine.check(estimate.bytes - 1).unwrap_err().stable_code(), "F0051");
+    assert_eq!(lattice("Spacing(\"6 mm\")").check(MEMORY).unwrap_err().stable_code(), "F0050");
+}
+
+#[test]
+fn a_mesh_file_brings_its_vertices_along() {
+    let scene = read(
+        r#"Scene(title: "", method: GeometricFlow(), resolution: Spacing("1 cm"), duration: 1, entities: [
+        [ MeshFile(path: "tetrahedron.obj", scale: 1e-4), Film(thickness: Uniform("400 nm")) ] ])"#,
+    );
+    assert_eq!(scene.estimate().rows, Rows::Mesh { vertices: 4, faces: 8 });
 }
 
 #[test]
@@ -151,7 +257,7 @@ fn the_estimate_follows_from_areas_and_rims() {
         [ Rectangle(width: "1 m", height: "50 cm"), Film(thickness: Uniform("400 nm")) ] ])"#,
     );
     let estimate = scene.estimate();
-    assert_eq!((estimate.eulerian, estimate.lagrangian, estimate.boundary), (5000, 50_000, 1500));
+    assert_eq!(estimate.rows, Rows::Particles { eulerian: 5000, lagrangian: 50_000, boundary: 1500 });
     let bytes = 6500 * froth::scene::BYTES_PER_EULERIAN + 50_000 * froth::scene::BYTES_PER_LAGRANGIAN;
     assert_eq!(estimate.bytes, bytes);
     assert!(scene.check(bytes).is_ok());
@@ -166,7 +272,7 @@ fn a_byte_order_mark_and_carriage_returns_do_not_matter() {
 
 /// Reads, checks, and shows the fault: all of it must go through for any bytes.
 fn go_through(bytes: &[u8]) {
-    let scene = Scene::from_bytes("any.ron", bytes, &AuthoredRegistry::built_in());
+    let scene = Scene::from_bytes("tests/meshes/any.ron", bytes, &AuthoredRegistry::built_in());
     if let Err(fault) = scene.and_then(|scene| scene.check(MEMORY)) {
         assert!(!fault.stable_code().is_empty());
         let shown = format!("{:?}", miette::Report::new(fault));
@@ -257,9 +363,9 @@ proptest! {
     #[test]
     fn no_mutated_scene_panics(
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0..6_usize, prop::sample::select(&PIECES[..])), 1..6),
-        bubble in any::<bool>(),
+        text in prop::sample::select(&[GIANT_BUBBLE, EVERYTHING, EVERYTHING_ON_MESH][..]),
     ) {
-        let mut bytes = if bubble { GIANT_BUBBLE } else { EVERYTHING }.as_bytes().to_vec();
+        let mut bytes = text.as_bytes().to_vec();
         for (place, removed, piece) in edits {
             let start = place.index(bytes.len());
             let end = (start + removed).min(bytes.len());

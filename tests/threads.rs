@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{OPEN_FILMS, SCENE, assert_same_results, draw};
+use common::{FOAM, OPEN_FILMS, SCENE, assert_same_results, draw};
 use froth::Simulation;
 use froth::run::{Run, RunFolder, RunSettings, Silent};
 use rayon::ThreadPoolBuilder;
@@ -16,6 +16,11 @@ fn any_number_of_threads_leaves_the_same_bytes() {
 #[test]
 fn open_films_several_films_and_warm_liquid_do_not_depend_on_threads_either() {
     assert_independent_of_threads(OPEN_FILMS, 1.5);
+}
+
+#[test]
+fn a_foam_that_changes_its_topology_does_not_depend_on_threads_either() {
+    assert_independent_of_threads(FOAM, 1.0);
 }
 
 fn assert_independent_of_threads(scene: &str, resolution: f64) {

@@ -13,7 +13,7 @@ use bevy_ecs::world::World;
 use froth::Simulation;
 use froth::run::{FrameError, Progress, Reporter, RunFolder, RunSettings};
 use froth_components::column::{Column, Plain};
-use froth_components::kind::EulerianParticle;
+use froth_components::kind::{EulerianParticle, MeshVertex};
 use froth_components::motion::Position;
 use froth_systems::rows::read_column;
 
@@ -53,6 +53,23 @@ pub(crate) const OPEN_FILMS: &str = r#"Scene(
 )
 "#;
 
+/// A small foam as a mesh: volumes, T1 processes, bursts, and a wire that moves.
+pub(crate) const FOAM: &str = r#"Scene(
+    title: "A small foam",
+    method: GeometricFlow(),
+    resolution: Spacing("1.2 cm"),
+    duration: "0.12 s",
+    frames_per_second: 100,
+    picture: (width: 96, height: 96),
+    entities: [
+        [ Packing(count: 5, radius: "3 cm", seed: Some(2)), Film(thickness: Noise(mean: "400 nm", relative: 0.2)) ],
+        [ Catenoid(centre: (0.25, 0.0, 0.0), radius: "3 cm", gap: "3 cm"), Film(thickness: Uniform("300 nm")) ],
+        [ Wire(path: Ring(centre: (0.25, "1.5 cm", 0.0), axis: (0, 1, 0), radius: "3 cm")), Moves(velocity: (0, 0.05, 0)) ],
+        [ Burst(every: "0.05 s", first: "0.03 s") ],
+    ],
+)
+"#;
+
 /// Number of the last frame of [`SCENE`].
 pub(crate) const LAST_FRAME: u64 = 12;
 
@@ -71,7 +88,8 @@ pub(crate) fn scene_file(folder: &Path) -> PathBuf {
 /// A frame that holds the carriers' places: as sensitive as a picture, and quicker.
 pub(crate) fn draw(world: &mut World, frame: u64, folder: &RunFolder) -> Result<(), FrameError> {
     let mut bytes = Vec::new();
-    for position in read_column::<EulerianParticle, Position>(world) {
+    let carriers = read_column::<EulerianParticle, Position>(world);
+    for position in carriers.into_iter().chain(read_column::<MeshVertex, Position>(world)) {
         position.value().write_le(&mut bytes);
     }
     Ok(folder.write(RunFolder::frame_file(frame), &bytes)?)

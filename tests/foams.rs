@@ -1,0 +1,150 @@
+//! Geometric flow as a user meets it: columns of one's own, events, liquid, wires, and faults.
+
+use bevy_ecs::system::{Query, ResMut};
+use bevy_ecs::{query::With, resource::Resource};
+use froth::Simulation;
+use froth_components::columns;
+use froth_components::film::{LiquidVolume, Thickness};
+use froth_components::kind::MeshVertex;
+use froth_components::motion::{ExternalAcceleration, Pinned, Position};
+use froth_surface::invariants::check_all;
+use froth_systems::plan::Requires;
+use froth_systems::stage::Stage;
+use froth_systems::tracker::events::TopologyEvent;
+use froth_systems::tracker::films;
+
+columns! {
+    /// A linear field that is carried along.
+    pub struct Dye(f64), "dye", "1";
+}
+
+#[derive(Resource, Default)]
+struct Seen(Vec<String>);
+
+fn simulation(entities: &str, method: &str) -> Simulation {
+    let text = format!(
+        r#"Scene(title: "t", method: {method}, resolution: Spacing("8 mm"), duration: "1 s", entities: [{entities}])"#
+    );
+    Simulation::builder().column::<MeshVertex, Dye>().build_from_text("foam.ron", &text).unwrap()
+}
+
+const LATTICE: &str = r#"[ Lattice(cell: "3 cm", counts: (2, 2, 2)), Film(thickness: Noise(mean: "400 nm")) ]"#;
+
+#[test]
+fn liquid_keeps_its_sum_and_a_column_of_ones_own_is_carried_along() {
+    let mut foam = simulation(LATTICE, "GeometricFlow()");
+    let liquid = |foam: &mut Simulation| foam.column::<MeshVertex, LiquidVolume>().iter().map(|v| v.0).sum::<f64>();
+    let before = liquid(&mut foam);
+    let dye: Vec<Dye> = foam.column::<MeshVertex, Position>().iter().map(|x| Dye(x.0.x)).collect();
+    foam.set_column::<MeshVertex, Dye>(&dye);
+    for _ in 0..12 {
+        foam.step().unwrap();
+    }
+    assert_ne!(foam.column::<MeshVertex, Dye>().len(), dye.len(), "the mesh should have changed");
+    assert!((liquid(&mut foam) / before - 1.0).abs() < 1e-12);
+    let (low, high) = (dye.iter().map(|d| d.0).fold(1.0, f64::min), dye.iter().map(|d| d.0).fold(-1.0, f64::max));
+    let carried = foam.column::<MeshVertex, Dye>();
+    let off = carried.iter().map(|d| (low - d.0).max(d.0 - high)).fold(f64::NEG_INFINITY, f64::max);
+    assert!(off < 1e-12, "means lie between what they are of, but for rounding: {off:e}");
+    assert!(foam.column::<MeshVertex, Thickness>().iter().all(|eta| eta.0 > 0.0));
+}
+
+#[test]
+fn changes_of_topology_are_entities_that_a_system_reads() {
+    let mut foam = simulation(LATTICE, "GeometricFlow()");
+    foam.world_mut().init_resource::<Seen>();
+    let read = |events: Query<&TopologyEvent>, mut seen: ResMut<Seen>| {
+        seen.0.extend(events.iter().map(|event| format!("{} {:?}", event.kind.name(), event.regions)));
+    };
+    foam.add_system(Stage::Observe, "read events", read, Requires::nothing());
+    foam.step().unwrap();
+    let seen = &foam.world().resource::<Seen>().0;
+    assert!(seen.iter().any(|event| event.starts_with("t1")), "{seen:?}");
+}
+
+#[test]
+fn the_films_of_a_foam_hold_all_invariants_after_every_step() {
+    let mut foam = simulation(LATTICE, "GeometricFlow()");
+    for step in 0..10 {
+        foam.step().unwrap();
+        let surface = films::take(foam.world_mut());
+        check_all(&surface).unwrap_or_else(|violation| panic!("step {step}: {violation}"));
+        films::put_back(foam.world_mut(), surface);
+    }
+}
+
+#[test]
+fn a_force_of_ones_own_moves_a_bubble_that_has_mass() {
+    let bubble = r#"[ Sphere(radius: "3 cm"), Film(thickness: Uniform("400 nm")) ]"#;
+    let mut bubble = simulation(bubble, r#"GeometricFlow(motion: Inertial())"#);
+    let push = |mut films: Query<&mut ExternalAcceleration, With<MeshVertex>>| {
+        films.iter_mut().for_each(|mut acceleration| acceleration.0.x += 2.0);
+    };
+    bubble.add_force("push", push);
+    bubble.advance_to(0.1).unwrap();
+    let places = bubble.column::<MeshVertex, Position>();
+    let centre = places.iter().map(|x| x.0.x).sum::<f64>() / places.len() as f64;
+    // x = a t^2 / 2; symplectic and backward Euler are off by a dt t / 2.
+    assert!((centre - 0.01).abs() < 0.002, "{centre}");
+}
+
+#[test]
+fn a_wire_carries_the_rim_that_lies_on_it() {
+    let scene = r#"
+        [ Catenoid(radius: "3 cm", gap: "3 cm"), Film(thickness: Uniform("300 nm")) ],
+        [ Wire(path: Ring(centre: (0, "1.5 cm", 0), axis: (0, 1, 0), radius: "3 cm")), Moves(velocity: (0, 0.05, 0)) ],
+    "#;
+    let mut film = simulation(scene, "GeometricFlow()");
+    film.advance_to(0.04).unwrap();
+    let places = film.column::<MeshVertex, Position>();
+    let pins = film.column::<MeshVertex, Pinned>();
+    let held = |pin: u64| places.iter().zip(&pins).filter(move |(_, p)| p.0 == pin).map(|(x, _)| x.0.y);
+    let on_rim = |y: f64| (y - 0.017).abs() < 1e-12;
+    // The rim and the tip of the lid behind it, a ring's radius beyond.
+    let on_tip = |y: f64| (y - 0.047).abs() < 1e-12;
+    assert!(held(2).filter(|y| on_rim(*y)).count() > 10 && held(2).all(|y| on_rim(y) || on_tip(y)));
+    assert!(held(1).any(|y| (y + 0.015).abs() < 1e-12));
+}
+
+#[test]
+fn a_bubble_that_no_step_can_keep_is_a_fault_with_its_region() {
+    let mut bubble = simulation(r#"[ Sphere(radius: "3 cm"), Film(thickness: Uniform("400 nm")) ]"#, "GeometricFlow()");
+    let targets = &mut bubble.world_mut().resource_mut::<froth_systems::geometric_flow::gas::BubbleGas>().targets;
+    targets.values_mut().for_each(|volume| *volume *= 1e-9);
+    let error = bubble.step().unwrap_err().to_string();
+    assert!(error.contains("geometric flow") && error.contains("region 1"), "{error}");
+}
+
+#[test]
+fn a_bubble_of_free_volume_shrinks_as_its_tension_likes() {
+    let bubble = r#"[ Sphere(radius: "3 cm"), Film(thickness: Uniform("400 nm")) ]"#;
+    let mut bubble = simulation(bubble, r#"GeometricFlow(volume: Free, time_step: "0.5 ms")"#);
+    bubble.advance_to(0.02).unwrap();
+    let places = bubble.column::<MeshVertex, Position>();
+    let radius = places.iter().map(|x| x.0.length()).sum::<f64>() / places.len() as f64;
+    // u = M 4 sigma/R: R^2 = R0^2 - 8 sigma M t, with the default mobility 0.1 m/(s Pa) and 30 mN/m.
+    let expected = (0.03_f64.powi(2) - 8.0 * 0.03 * 0.1 * 0.02).sqrt();
+    assert!((radius / expected - 1.0).abs() < 0.02, "{radius} {expected}");
+}
+
+columns! {
+    /// A number that is a name.
+    pub struct Batch(u64), "batch", "1";
+}
+
+#[test]
+fn whole_numbers_are_handed_on_where_films_are_held() {
+    let text = r#"Scene(title: "t", method: GeometricFlow(remesh: (longest: 1.01, shortest: 0.5)), resolution: Spacing("6 mm"),
+        duration: "1 s", entities: [[ Catenoid(radius: "3 cm", gap: "3 cm"), Film(thickness: Uniform("300 nm")) ]])"#;
+    let mut film = Simulation::builder().column::<MeshVertex, Batch>().build_from_text("film.ron", text).unwrap();
+    let before = film.column::<MeshVertex, Batch>().len();
+    film.set_column::<MeshVertex, Batch>(&vec![Batch(7); before]);
+    for _ in 0..3 {
+        film.step().unwrap();
+    }
+    let after = film.column::<MeshVertex, Batch>();
+    assert!(after.len() > before && after.iter().all(|batch| batch.0 == 7), "{before} {}", after.len());
+    let held = film.column::<MeshVertex, Pinned>();
+    let surface = films::take(film.world_mut());
+    assert!(held.iter().zip(surface.pinned.iter()).all(|(pin, held)| (pin.0 > 0) == *held));
+}

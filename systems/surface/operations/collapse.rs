@@ -304,13 +304,21 @@ impl Session<'_> {
         regions
     }
 
-    fn note_collapse(&mut self, plan: &Plan, kept: VertexRow) {
-        let place = plan.at(self.surface, kept);
-        for (back, between, front) in plan.fused.clone() {
-            if !separate::share_film(self.surface, back, front) {
+    /// Notes regions that come to share their first film; once, however many faces of it the plan makes.
+    pub(super) fn note_coalescence(&mut self, plan: &Plan, place: DVec3) {
+        let mut noted: SmallVec<[[Region; 2]; 2]> = SmallVec::new();
+        for (back, between, front) in plan.fused.iter().copied() {
+            let pair = [back.min(front), back.max(front)];
+            if !noted.contains(&pair) && !separate::share_film(self.surface, back, front) {
+                noted.push(pair);
                 self.note(EventKind::Coalescence, place, [back, front, between]);
             }
         }
+    }
+
+    fn note_collapse(&mut self, plan: &Plan, kept: VertexRow) {
+        let place = plan.at(self.surface, kept);
+        self.note_coalescence(plan, place);
         self.note_windows(plan, place);
     }
 

@@ -10,8 +10,7 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
 use super::plan::{Plan, replace_vertex};
-use super::{Session, collapse, separate};
-use crate::event::EventKind;
+use super::{Session, collapse};
 use crate::grid::{Aabb, BoxGrid};
 use crate::kernel::closest::{point_triangle, segment_segment};
 use crate::mesh::Face;
@@ -234,11 +233,7 @@ impl Session<'_> {
 
     fn note_snap(&mut self, plan: &Plan, kept: VertexRow) {
         let place = plan.at(self.surface, kept);
-        for (back, between, front) in plan.fused.clone() {
-            if !separate::share_film(self.surface, back, front) {
-                self.note(EventKind::Coalescence, place, [back, front, between]);
-            }
-        }
+        self.note_coalescence(plan, place);
         self.note_windows(plan, place);
     }
 }

@@ -53,7 +53,7 @@ fn towards_middle(surface: &Surface, vertex: VertexRow) -> DVec3 {
 }
 
 /// Ends of the vertex's edges that have not two faces.
-fn junction_neighbours(surface: &Surface, vertex: VertexRow) -> SmallVec<[VertexRow; 4]> {
+pub(crate) fn junction_neighbours(surface: &Surface, vertex: VertexRow) -> SmallVec<[VertexRow; 4]> {
     let faces = surface.mesh.faces_of(vertex);
     let mut ends: SmallVec<[VertexRow; 32]> =
         faces.iter().flat_map(|row| surface.mesh.face(*row).around(vertex)).collect();

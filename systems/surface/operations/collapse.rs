@@ -19,6 +19,7 @@ use super::{Session, separate};
 use crate::event::EventKind;
 use crate::policy::Policy;
 use crate::rows::{FaceRow, Region, VertexRow};
+use crate::smoothing::junction_neighbours;
 use crate::surface::Surface;
 use crate::transfer::Blend;
 
@@ -40,20 +41,11 @@ pub(super) fn rank(surface: &Surface, vertex: VertexRow) -> Rank {
     if surface.pinned[vertex] {
         return Rank::Wire;
     }
-    match junction_edges(surface, vertex) {
+    match junction_neighbours(surface, vertex).len() {
         0 => Rank::Film,
         2 => Rank::Curve,
         _ => Rank::Point,
     }
-}
-
-/// Edges of a vertex that have not two faces.
-fn junction_edges(surface: &Surface, vertex: VertexRow) -> usize {
-    let faces = surface.mesh.faces_of(vertex);
-    let mut ends: SmallVec<[VertexRow; 32]> =
-        faces.iter().flat_map(|row| surface.mesh.face(*row).around(vertex)).collect();
-    ends.sort_unstable();
-    ends.chunk_by(|a, b| a == b).filter(|faces| faces.len() != 2).count()
 }
 
 impl Session<'_> {

@@ -193,9 +193,11 @@ impl Session<'_> {
         if p == q || self.surface.mesh.has_edge(p, q) || self.surface.pinned[p] && self.surface.pinned[q] {
             return None;
         }
-        let (kept, gone) = if self.surface.pinned[q] { (q, p) } else { (p.min(q), p.max(q)) };
-        let kept = if self.surface.pinned[kept] || !self.surface.pinned[gone] { kept } else { gone };
-        let gone = if kept == p { q } else { p };
+        let (kept, gone) = match (self.surface.pinned[p], self.surface.pinned[q]) {
+            (_, true) => (q, p),
+            (true, false) => (p, q),
+            (false, false) => (p.min(q), p.max(q)),
+        };
         let plan = self.plan_snap(kept, gone)?;
         if self.turns_over(&plan)
             || !self.is_well_shaped(&plan)

@@ -14,11 +14,11 @@ pub enum EventKind {
     /// Those that lost theirs come first. Pulled apart: the two that met in a point, then those that now meet where these did, ascending.
     /// An edge that gave way to a film: those that met along the edge, in cyclic order, then the two that the film separates.
     T1,
-    /// A film came apart in a point: a neck closed.
+    /// A film came apart in a point: a neck closed. Where its faces came to lie on each other: the region on their outer sides first.
     Pinch,
     /// Two regions that were apart came to share a film.
     Coalescence,
-    /// Two films of the same two regions joined, and opened a window.
+    /// Two films of the same two regions joined, and opened a window: one that grows is the same one.
     Window,
     /// A region vanished with its last film (T2).
     Vanished,

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what is a film, what is a region | [`rows`], [`mesh`], [`surface`] |
 //! | what can films be at the start | [`shapes`], [`files`] |
+//! | which angles are the film's own | [`corners`] |
 //! | what must hold | [`invariants`], [`fault`] |
 //! | what is near, what crosses, when do two things meet | [`kernel`], [`grid`] |
 //! | what meets at a vertex, what hangs together | [`sectors`], [`bodies`] |
@@ -13,6 +14,7 @@
 
 pub mod bodies;
 pub mod calculus;
+pub mod corners;
 pub mod event;
 pub mod fault;
 pub mod files;

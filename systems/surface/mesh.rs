@@ -104,6 +104,13 @@ impl Face {
         }
     }
 
+    /// Its edges, each with the lower row first.
+    #[must_use]
+    pub fn edges(&self) -> [[VertexRow; 2]; 3] {
+        let [a, b, c] = self.vertices;
+        [[a, b], [b, c], [a, c]]
+    }
+
     /// `+1` if the face contains the directed edge `a -> b`, `-1` if it contains `b -> a`.
     #[must_use]
     #[inline]

@@ -63,6 +63,11 @@ impl Policy {
     pub const SPLIT_ANGLE: f64 = 160.0 / 180.0 * std::f64::consts::PI;
     /// Faces with an angle below this are improved where that is possible: 25 degrees.
     pub const GOOD_ANGLE: f64 = 25.0 / 180.0 * std::f64::consts::PI;
+    /// Faces with an angle below this are too thin to wait for: 21 degrees.
+    pub const NARROW_ANGLE: f64 = 21.0 / 180.0 * std::f64::consts::PI;
+    /// Junction curves of one edge, opposite to an angle that is too narrow, are collapsed below this many `L`, as others below
+    /// [`Self::UNGATED_COLLAPSE`]: still well below what separations open.
+    pub const SQUEEZED_STRUT: f64 = 0.25;
     /// Edges up to this many `L` are collapsed where that improves a face with a small angle.
     pub const COLLAPSE_FOR_SHAPE: f64 = 0.7;
     /// No vertex goes farther than this many `L` for the sake of angles.

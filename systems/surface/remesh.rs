@@ -35,7 +35,7 @@ pub struct Remeshed {
 }
 
 impl Tracker {
-    /// A pass: snap, split, collapse, flip, separate, improve thin faces, in this order; then rows are closed up.
+    /// A pass: snap, split, collapse, flip, separate, improve thin faces and refine narrow films, in this order; then rows are closed up.
     ///
     /// The surface must not intersect itself, and does not afterwards. `data` sees every operation and the new order of rows.
     pub fn remesh(&mut self, surface: &mut Surface, policy: &Policy, data: &mut dyn Transfer) -> Remeshed {
@@ -50,7 +50,7 @@ impl Tracker {
             session.flip_edges();
         }
         if policy.separation {
-            session.separate_vertices();
+            session.separate_films();
         }
         session.improve_faces();
         let (counts, mut events) = (session.counts, session.events);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::rows::{FaceRow, VertexRow};
@@ -84,6 +85,14 @@ impl Borders {
     pub fn with_next_ring(&self, surface: &Surface, sheet: &[FaceRow]) -> Vec<FaceRow> {
         let ring: Vec<VertexRow> = sheet.iter().flat_map(|face| surface.mesh.face(*face).vertices()).collect();
         self.grown(surface, sheet.to_vec(), |face| surface.mesh.face(face).vertices().iter().any(|v| ring.contains(v)))
+    }
+
+    /// The faces, and those with a corner within `reach` metres of a place that are reached from them without crossing a border or leaving
+    /// that distance.
+    #[must_use]
+    pub fn within(&self, surface: &Surface, sheet: &[FaceRow], place: DVec3, reach: f64) -> Vec<FaceRow> {
+        let is_near = |face: FaceRow| surface.corners(face).iter().any(|x| x.distance(place) < reach);
+        self.grown(surface, sheet.to_vec(), is_near)
     }
 
     /// Grows a set of faces over edges of two films, as long as `accepts` holds.

@@ -23,9 +23,9 @@ use glam::DVec3;
 use rustix::time::{ClockId, clock_gettime};
 
 /// Phases of a step, in their order.
-const PHASES: [&str; 12] = [
-    "begin", "snap", "split", "collapse", "flip", "separate", "close", "adopt", "rebuild", "propose", "smooth",
-    "motion",
+const PHASES: [&str; 13] = [
+    "begin", "snap", "split", "collapse", "flip", "separate", "improve", "close", "adopt", "rebuild", "propose",
+    "smooth", "motion",
 ];
 
 /// A scene: films, target edge length `L` (m), step (s), snapping distance over `L`, steps before and during measurement.
@@ -148,8 +148,10 @@ impl Run {
         clock.lap("collapse");
         session.flip_edges();
         clock.lap("flip");
-        session.separate_vertices();
+        session.separate_films();
         clock.lap("separate");
+        session.improve_faces();
+        clock.lap("improve");
         let (counts, mut events) = (session.counts, session.events);
         self.operations += counts.splits + counts.collapses + counts.flips + counts.separations + counts.snaps;
         if !events.is_empty() {

@@ -9,7 +9,7 @@
 //! 4. the tracker moves the mesh as far as is safe, and [`Flow::finish`] takes velocities from what was achieved.
 //!
 //! [`settings`] and [`forcing`] are the knobs; [`state`] is what lives on between steps; [`stable_step`] bounds explicit
-//! steps.
+//! steps, [`shape_keeping`] all steps by what the mesh can take before it has to be mended.
 //!
 //! # Equation
 //! Inertial motion: `m ẍ = -∂E/∂x + m g + Σ_i p_i ∂V_i/∂x` with `E = Σ_f T_f A_f`. Overdamped motion: velocity = mobility x
@@ -32,6 +32,7 @@ pub mod pressure_system;
 pub mod projection;
 pub mod rigid;
 pub mod settings;
+pub mod shape_keeping;
 pub mod stable_step;
 pub mod state;
 pub mod step;

@@ -4,6 +4,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::{Plan, Session};
+use crate::corners::angles;
 use crate::grid::Aabb;
 use crate::kernel::crossing::{point_in_tetrahedron, segment_pierces_triangle, triangles_cross};
 use crate::mesh::Face;
@@ -50,12 +51,6 @@ impl Shape {
 /// Area of a triangle, m^2.
 pub(super) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
-}
-
-/// Angles of a triangle at its corners, radians.
-pub(super) fn angles([a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let angle = |at: DVec3, p: DVec3, q: DVec3| (p - at).cross(q - at).length().atan2((p - at).dot(q - at));
-    [angle(a, b, c), angle(b, c, a), angle(c, a, b)]
 }
 
 /// Per corner of a triangle: whether its angle is below 3 degrees. By its tangent, twice the area over the product of its sides.

@@ -8,7 +8,8 @@
 //! of no change.
 //! Discretisation: `(sum of N_r N_r^T + eps I) (p - m) = sum of N_r (c_r - m . N_r)` from the midpoint `m`.
 //! Limits: an edge above 0.2 `L` is not collapsed if that leaves a vertex to be separated: this hysteresis keeps collapse and
-//! separation (which opens to 0.4 `L`) from undoing each other.
+//! separation (which opens to 0.4 `L`) from undoing each other. Where a junction curve of one edge squeezes a face to below 21 degrees the
+//! limit is 0.25 `L`. Junction edges beside a narrow film stay short (`refine`).
 
 use glam::{DMat3, DVec3};
 use smallvec::{SmallVec, smallvec};
@@ -54,6 +55,21 @@ impl Session<'_> {
         let shortest = self.policy.shortest * self.edge();
         let mut queue = self.edges_by_length(|length| length < shortest);
         queue.extend(self.edges_opposite_to_needles(shortest));
+        self.collapse_rounds(queue);
+    }
+
+    /// Collapses edges that are too short at some vertices and their neighbours, until nothing more can be.
+    pub(super) fn collapse_short_edges_of(&mut self, vertices: Vec<VertexRow>) {
+        let neighbours = vertices.iter().flat_map(|v| self.surface.mesh.neighbours(*v));
+        let mut around: Vec<VertexRow> = neighbours.chain(vertices.iter().copied()).collect();
+        around.sort_unstable();
+        around.dedup();
+        let queue = self.short_edges_of(&around, self.policy.shortest * self.edge());
+        self.collapse_rounds(queue);
+    }
+
+    fn collapse_rounds(&mut self, mut queue: Vec<(f64, [VertexRow; 2])>) {
+        let shortest = self.policy.shortest * self.edge();
         // Every round collapses at least one edge, so rounds are bounded by the mesh itself.
         while !queue.is_empty() {
             let mut changed: Vec<VertexRow> = Vec::new();
@@ -101,7 +117,13 @@ impl Session<'_> {
         }
         // Near a short junction curve short edges within the films are wanted, but not around a waist, which is to close.
         let in_film = rank(self.surface, a).min(rank(self.surface, b)) == Rank::Film && self.shares_only_faces(a, b);
-        let most = if in_film { Policy::SHORTEST_IN_FILM } else { Policy::UNGATED_COLLAPSE };
+        let most = match in_film {
+            true => Policy::SHORTEST_IN_FILM,
+            false if self.length(a, b) < Policy::SQUEEZED_STRUT * self.edge() && self.squeezes(a, b) => {
+                Policy::SQUEEZED_STRUT
+            }
+            false => Policy::UNGATED_COLLAPSE,
+        };
         let is_tiny = self.length(a, b) < most * self.edge();
         if self.rests(a, b) {
             return None;
@@ -111,7 +133,7 @@ impl Session<'_> {
         let plan = self.plan_collapse(kept, gone, place)?;
         let is_fit = is_tiny
             || self.closes_narrow_film(&plan, [kept, gone])
-            || self.is_well_shaped(&plan) && self.keeps_angles(&plan);
+            || self.is_well_shaped(&plan) && self.keeps_angles(&plan) && !self.borders_narrow_film(a, b);
         if is_fit { self.collapse_as_planned([kept, gone], is_tiny, &plan) } else { None }
     }
 
@@ -149,6 +171,18 @@ impl Session<'_> {
     fn is_strut(&self, a: VertexRow, b: VertexRow) -> bool {
         let is_point = |v| rank(self.surface, v) == Rank::Point;
         self.surface.mesh.faces_of_edge(a, b).len() == 3 && is_point(a) && is_point(b)
+    }
+
+    /// Whether an edge is a whole junction curve, opposite to an angle that is too narrow.
+    fn squeezes(&self, a: VertexRow, b: VertexRow) -> bool {
+        let opposite = |row: &FaceRow| {
+            let face = self.surface.mesh.face(*row);
+            let far = face.opposite(a, b);
+            let [p, q] = [a, b].map(|v| self.surface.positions[v] - self.surface.positions[far]);
+            p.cross(q).length().atan2(p.dot(q))
+        };
+        self.is_strut(a, b)
+            && self.surface.mesh.faces_of_edge(a, b).iter().any(|row| opposite(row) < Policy::NARROW_ANGLE)
     }
 
     /// Whether both ends took part in a separation a moment ago.
@@ -314,13 +348,25 @@ impl Session<'_> {
         self.note_windows(plan, place);
     }
 
-    /// Notes windows, but for those whose gap is all there was of a region.
+    /// Notes what it means that films of the same two regions come to lie on each other: a window opens, or a neck closes. Once for every
+    /// two regions; not for those whose gap is all there was of a region.
+    ///
+    /// Where a film folds flat onto itself, or a window grows, the Euler characteristic stays, and there is nothing to note.
     pub(super) fn note_windows(&mut self, plan: &Plan, place: DVec3) {
+        if plan.windows.is_empty() {
+            return;
+        }
+        let kind = match plan.euler_change(self.surface) {
+            0 => return,
+            ..0 => EventKind::Window,
+            1.. => EventKind::Pinch,
+        };
         let ended = self.ended_regions(plan);
-        for (outer, between) in plan.windows.clone() {
-            if !ended.contains(&between) {
-                self.note(EventKind::Window, place, [outer, between]);
-            }
+        let mut opened = plan.windows.clone();
+        opened.sort_unstable();
+        opened.dedup();
+        for (outer, between) in opened.into_iter().filter(|(_, between)| !ended.contains(between)) {
+            self.note(kind, place, [outer, between]);
         }
     }
 

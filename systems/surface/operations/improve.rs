@@ -13,24 +13,40 @@
 //!       a---b              a---b
 //! ```
 //!
-//! At a junction point a film often has one face only, with two junction curves as sides: there an insertion halves its angle. A vertex with
-//! few neighbours inside a film, as snaps leave them, is collapsed onto the best of them, however far.
+//! A vertex with few neighbours inside a film, as snaps leave them, is collapsed onto the best of them, however far.
 //!
 //! Each of them is refused unless the smallest angle of all faces that it changes grows, and collapses elsewhere never make an angle below
 //! the good one smaller; so the angles of a mesh at rest only grow, and the pass ends.
-//! Limits: where two junction curves leave a point less than 20 degrees apart the angle is that of the film, not of the mesh; it goes as the
-//! curves part or the film closes.
+//! Corners that are a film's own ([`corners`](crate::corners)) are counted apart: they may not become narrower, and do not hide what is wrong
+//! around them. Narrow films get shorter edges (`refine`), and another round.
 
 use glam::DVec3;
 use smallvec::SmallVec;
 
+use super::Session;
 use super::collapse::{Rank, rank};
 use super::plan::{Added, Plan};
 use super::split::plan_split;
-use super::{Session, checks};
+use crate::corners::{self, LeastAngles};
 use crate::mesh::Face;
 use crate::policy::Policy;
 use crate::rows::{FaceRow, VertexRow};
+
+/// Angles that differ by less are taken as equal, radians: rounding must not decide.
+const TIE: f64 = 1e-9;
+
+/// Sorts plans by the least angle that they leave, largest first; ties stay in their order.
+fn sort_by_angle<T>(plans: &mut SmallVec<[(f64, T); 4]>) {
+    let mut order: SmallVec<[(usize, (f64, T)); 4]> = plans.drain(..).enumerate().collect();
+    order.sort_by(|x, y| y.1.0.total_cmp(&x.1.0));
+    order.chunk_by_mut(|x, y| x.1.0 - y.1.0 < TIE).for_each(|tied| tied.sort_by_key(|(place, _)| *place));
+    plans.extend(order.into_iter().map(|(_, plan)| plan));
+}
+
+/// Whether no film's own corner becomes narrower, or comes to be below the good angle.
+fn keeps_own(before: &LeastAngles, after: &LeastAngles) -> bool {
+    after.own >= before.own.min(Policy::GOOD_ANGLE) - TIE
+}
 
 /// By what part the smallest angle has to grow for a vertex to come, go or move: less would be lost in the next step, and tried again.
 const GROWTH: f64 = 1.1;
@@ -38,6 +54,13 @@ const GROWTH: f64 = 1.1;
 impl Session<'_> {
     /// Improves faces with small angles, worst first, in at most six sweeps.
     pub fn improve_faces(&mut self) {
+        self.sweep_thin_faces();
+        if self.refine_narrow_films() > 0 {
+            self.sweep_thin_faces();
+        }
+    }
+
+    fn sweep_thin_faces(&mut self) {
         const MOST_SWEEPS: usize = 6;
         for sweep in 0..MOST_SWEEPS {
             let mut thin = self.thin_faces();
@@ -46,6 +69,8 @@ impl Session<'_> {
                 sweep == 0 || self.surface.mesh.face(*row).vertices().iter().any(|v| self.marks[*v].dirty)
             });
             thin.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            // Halved triangles are similar to whole ones: rounding must not decide.
+            thin.chunk_by_mut(|x, y| y.0 - x.0 < TIE).for_each(|tied| tied.sort_by_key(|(_, row)| *row));
             let improved = thin.into_iter().filter(|(_, row)| self.improve_face(*row)).count();
             if improved == 0 {
                 break;
@@ -54,9 +79,16 @@ impl Session<'_> {
     }
 
     fn thin_faces(&self) -> Vec<(f64, FaceRow)> {
-        let films = self.surface.mesh.faces().filter(|(_, face)| !face.is_ghost());
-        let angles = films.map(|(row, _)| (checks::Shape::of([self.surface.corners(row)]).least_angle, row));
+        let rows = self.films_with_angle_below(Policy::GOOD_ANGLE).into_iter();
+        let angles = rows.map(|row| (LeastAngles::NONE.with_face_of(self.surface, row).rest, row));
         angles.filter(|(angle, _)| *angle < Policy::GOOD_ANGLE).collect()
+    }
+
+    /// Rows, ascending, of films with an angle below an acute one (radians).
+    pub(super) fn films_with_angle_below(&self, angle: f64) -> Vec<FaceRow> {
+        let square = angle.tan().powi(2);
+        let films = self.surface.mesh.faces().filter(|(_, face)| !face.is_ghost()).map(|(row, _)| row);
+        films.filter(|row| corners::has_angle_below(self.surface.corners(*row), square)).collect()
     }
 
     /// Improves a face, if it still exists, by the first operation that helps; whether any did.
@@ -80,11 +112,12 @@ impl Session<'_> {
         for (split, other) in [(longest, middle), (middle, longest)] {
             let Some(plain) = self.plan_middle(split) else { continue };
             let flipped = if self.policy.flips { self.with_flip(&plain, row, split, other) } else { None };
-            plans
-                .extend([Some(plain), flipped].into_iter().flatten().map(|plan| (self.least_angle_after(&plan), plan)));
+            plans.extend(
+                [Some(plain), flipped].into_iter().flatten().map(|plan| (self.least_angles_after(&plan).rest, plan)),
+            );
         }
         plans.extend([longest, middle].into_iter().filter_map(|edge| self.plan_insertion(row, edge)));
-        plans.sort_by(|x, y| y.0.total_cmp(&x.0));
+        sort_by_angle(&mut plans);
         for (_, plan) in plans {
             if !self.improves(&plan, GROWTH) {
                 return false;
@@ -98,11 +131,16 @@ impl Session<'_> {
     }
 
     /// The split of an edge in the middle, if its halves are not too short.
-    fn plan_middle(&self, [a, b]: [VertexRow; 2]) -> Option<Plan> {
+    fn plan_middle(&self, edge: [VertexRow; 2]) -> Option<Plan> {
+        self.plan_division(edge, 0.5)
+    }
+
+    /// The split of an edge at a parameter, 0 to 1, if its parts are not too short.
+    pub(super) fn plan_division(&self, [a, b]: [VertexRow; 2], t: f64) -> Option<Plan> {
         let is_long = self.length(a, b) > 2.2 * Policy::UNGATED_COLLAPSE * self.edge();
         (is_long && !self.is_chord_of_wire(a, b)).then(|| {
-            let middle = self.surface.positions[a].midpoint(self.surface.positions[b]);
-            plan_split(self.surface, a, b, 0.5, middle)
+            let place = self.surface.positions[a].lerp(self.surface.positions[b], t);
+            plan_split(self.surface, a, b, t, place)
         })
     }
 
@@ -138,21 +176,28 @@ impl Session<'_> {
         (!has_twins).then_some(flipped)
     }
 
-    fn least_angle_after(&self, plan: &Plan) -> f64 {
-        let new = plan.shaped(self.surface).map(|(face, _)| plan.corners(self.surface, &face));
-        checks::Shape::of(new).least_angle
+    fn least_angles_before(&self, plan: &Plan) -> LeastAngles {
+        let rows = plan.removed.iter().chain(&plan.reshaped);
+        rows.fold(LeastAngles::NONE, |least, row| least.with_face_of(self.surface, *row))
     }
 
-    /// Whether the smallest angle of all faces that a plan changes grows by a factor.
+    pub(super) fn least_angles_after(&self, plan: &Plan) -> LeastAngles {
+        plan.shaped(self.surface).fold(LeastAngles::NONE, |least, (face, _)| {
+            let is_own = |v| face.around(v).into_iter().all(|end| plan.is_junction(self.surface, v, end));
+            least.with(&face, plan.corners(self.surface, &face), is_own)
+        })
+    }
+
+    /// Whether the smallest angle of all faces that a plan changes grows by a factor, and no film's own corner becomes narrower.
     pub(super) fn improves(&self, plan: &Plan, factor: f64) -> bool {
-        let old = plan.removed.iter().chain(&plan.reshaped).map(|row| self.surface.corners(*row));
-        self.least_angle_after(plan) > factor * checks::Shape::of(old).least_angle
+        let (before, after) = (self.least_angles_before(plan), self.least_angles_after(plan));
+        after.rest > factor * before.rest + TIE && keeps_own(&before, &after)
     }
 
     /// Whether no face comes to have an angle below the good one that is smaller than those before.
     pub(super) fn keeps_angles(&self, plan: &Plan) -> bool {
-        let old = plan.removed.iter().chain(&plan.reshaped).map(|row| self.surface.corners(*row));
-        self.least_angle_after(plan) >= checks::Shape::of(old).least_angle.min(Policy::GOOD_ANGLE)
+        let (before, after) = (self.least_angles_before(plan), self.least_angles_after(plan));
+        after.rest >= before.rest.min(Policy::GOOD_ANGLE) - TIE && keeps_own(&before, &after)
     }
 
     /// Collapses an edge for the sake of the angles around, to the best of a few places.
@@ -160,14 +205,14 @@ impl Session<'_> {
         if self.rests(a, b) {
             return None;
         }
-        let mut plans: SmallVec<[(f64, [VertexRow; 2], Plan); 3]> = SmallVec::new();
+        let mut plans: SmallVec<[(f64, ([VertexRow; 2], Plan)); 4]> = SmallVec::new();
         for (ends, place) in self.collapses(a, b) {
             let plan = self.plan_collapse(ends[0], ends[1], place);
             let fit = plan.filter(|plan| self.improves(plan, GROWTH) && !self.stretches(plan, ends[0]));
-            plans.extend(fit.map(|plan| (self.least_angle_after(&plan), ends, plan)));
+            plans.extend(fit.map(|plan| (self.least_angles_after(&plan).rest, (ends, plan))));
         }
-        plans.sort_by(|x, y| y.0.total_cmp(&x.0));
-        plans.into_iter().find_map(|(_, ends, plan)| self.collapse_as_planned(ends, false, &plan))
+        sort_by_angle(&mut plans);
+        plans.into_iter().find_map(|(_, (ends, plan))| self.collapse_as_planned(ends, false, &plan))
     }
 
     /// Ways to collapse an edge, `[kept, gone]` and place: a short one as always, and any by which a vertex with few neighbours

@@ -11,6 +11,9 @@
 //!       q                    q
 //! ```
 //!
+//! Equation: the volumes of the two regions are linear in the place `w` of the new vertex, with gradient `N/3`, `N` the area normal of the
+//! rim; so `w` is shifted along `N` to where both stay as they are.
+//!
 //! Without [`Policy::flips`] the hole does not grow.
 //! Discretisation: the best of a grid of places on the face across. Junctions, ghosts and edges on wires bound the hole.
 
@@ -52,9 +55,11 @@ impl Session<'_> {
             let hole = self.hole(row, across, [a, b], place);
             (self.least_angle_around(&hole, place), weights, place, hole)
         });
-        let (angle, weights, place, hole) = holes.reduce(|x, y| if y.0 > x.0 + TIE { y } else { x })?;
+        let (_, weights, place, hole) = holes.reduce(|x, y| if y.0 > x.0 + TIE { y } else { x })?;
         let parents = [a, b, far].into_iter().zip(weights).collect();
-        Some((angle, self.plan_fill(&hole, place, parents)))
+        let mut plan = self.plan_fill(&hole, place, parents);
+        self.level(&mut plan);
+        Some((self.least_angles_after(&plan).rest, plan))
     }
 
     fn plan_fill(&self, hole: &Hole, place: DVec3, parents: SmallVec<[(VertexRow, f64); 3]>) -> Plan {
@@ -70,6 +75,22 @@ impl Session<'_> {
             removed: hole.faces.iter().copied().collect(),
             blends: smallvec![Blend { vertex, parents }],
             ..Plan::default()
+        }
+    }
+
+    /// Shifts the new vertex along the normal of the rim, so that no volume changes: a fill across a bend would cut it off.
+    fn level(&self, plan: &mut Plan) {
+        let surface = &*self.surface;
+        let (vertex, place) = (VertexRow(surface.mesh.vertex_rows() as u32), plan.created[0].0);
+        let Some((region, change)) = plan.volume_changes(surface).first().copied() else { return };
+        let gradient = |added: &Added| {
+            let [p, q] = added.face.around(vertex).map(|v| surface.positions[v] - place);
+            let outwards = if added.face.labels()[0] == region { 1.0 } else { -1.0 };
+            outwards * p.cross(q) / 6.0
+        };
+        let gradient: DVec3 = plan.added.iter().map(gradient).sum();
+        if gradient.length_squared() > 0.0 {
+            plan.created[0].0 -= gradient * (change / gradient.length_squared());
         }
     }
 

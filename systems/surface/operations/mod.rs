@@ -12,6 +12,7 @@
 //! | snap of two vertices | `snap` | joins films that come near |
 //! | flip of an edge | `flip` | never |
 //! | move of a vertex within its film | `relax` | never |
+//! | refinement of narrow films | `refine` | never |
 //! | insertion of a vertex into a film | `insert` | never |
 //! | improvement of thin faces | `improve` | never |
 //! | burst of a film | `burst` | joins two regions |
@@ -24,6 +25,7 @@ mod flip;
 mod improve;
 mod insert;
 mod plan;
+mod refine;
 mod relax;
 mod separate;
 mod snap;

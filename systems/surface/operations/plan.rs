@@ -3,7 +3,7 @@
 use glam::DVec3;
 use smallvec::SmallVec;
 
-use crate::mesh::Face;
+use crate::mesh::{Face, FaceList};
 use crate::rows::{FaceRow, Region, VertexRow};
 use crate::surface::Surface;
 use crate::transfer::Blend;
@@ -82,6 +82,15 @@ impl Plan {
         kept.chain(added).collect()
     }
 
+    /// Whether an edge is a junction once the plan is carried out: whether it has any number of faces but two.
+    #[must_use]
+    pub fn is_junction(&self, surface: &Surface, a: VertexRow, b: VertexRow) -> bool {
+        let is_old = a.max(b).index() < surface.mesh.vertex_rows();
+        let old = if is_old { surface.mesh.faces_of_edge(a, b) } else { FaceList::new() };
+        let kept = old.iter().filter(|row| !self.removed.contains(row)).count();
+        kept + self.added.iter().filter(|added| added.face.has(a) && added.face.has(b)).count() != 2
+    }
+
     /// Moves a vertex, and notes what its faces sweep.
     pub fn move_vertex(&mut self, surface: &Surface, vertex: VertexRow, to: DVec3) {
         self.moved.push((vertex, to));
@@ -121,6 +130,31 @@ impl Plan {
         touched.sort_unstable();
         touched.dedup();
         touched
+    }
+
+    /// How much the Euler characteristic of the films, `vertices - edges + faces`, changes: down by one where two films open a window or
+    /// meet in a point, up by one where a neck closes, not at all where the mesh alone is another.
+    #[must_use]
+    pub fn euler_change(&self, surface: &Surface) -> i64 {
+        let mesh = &surface.mesh;
+        let stays = |row: &FaceRow| !self.removed.contains(row);
+        let touched = self.touched(surface);
+        let is_old = |v: VertexRow| v.index() < mesh.vertex_rows();
+        let vertices = touched.iter().map(|v| {
+            let before = is_old(*v) && mesh.has_vertex(*v);
+            i64::from(!self.star(surface, *v).is_empty()) - i64::from(before)
+        });
+        let gone = self.removed.iter().map(|row| mesh.face(*row));
+        let mut edges: SmallVec<[[VertexRow; 2]; 48]> =
+            gone.chain(self.added.iter().map(|added| added.face)).flat_map(|face| face.edges()).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let edges = edges.iter().map(|[a, b]| {
+            let old = if is_old(*b) { mesh.faces_of_edge(*a, *b) } else { FaceList::new() };
+            let comes = self.added.iter().any(|added| added.face.has(*a) && added.face.has(*b));
+            i64::from(comes || old.iter().any(stays)) - i64::from(!old.is_empty())
+        });
+        vertices.sum::<i64>() - edges.sum::<i64>() + self.added.len() as i64 - self.removed.len() as i64
     }
 
     /// How much the volume of each region changes, m^3: exact, since what goes and what comes bound the same cavity.

@@ -65,6 +65,16 @@ enum Way {
 }
 
 impl Session<'_> {
+    /// Separates whatever meets without a film; then collapses what edges that left short, and separates what that left.
+    pub fn separate_films(&mut self) {
+        if self.separate_vertices() == 0 {
+            return;
+        }
+        let separated = self.surface.mesh.vertices().filter(|v| self.marks[*v].separated == self.step).collect();
+        self.collapse_short_edges_of(separated);
+        self.separate_vertices();
+    }
+
     /// Separates whatever meets without a film, the largest gain first, until nothing more can be; gives the number of separations.
     ///
     /// Only vertices whose faces changed are looked at, and those that were postponed.

@@ -73,8 +73,8 @@ impl Session<'_> {
                 pairs.extend(self.measured(Pair::VertexFace(vertex, row), reach));
             }
         }
-        for e in edges(&a) {
-            for f in edges(&b).into_iter().filter(|f| !f.contains(&e[0]) && !f.contains(&e[1])) {
+        for e in a.edges() {
+            for f in b.edges().into_iter().filter(|f| !f.contains(&e[0]) && !f.contains(&e[1])) {
                 pairs.extend(self.measured(Pair::EdgeEdge(e.min(f), e.max(f)), reach));
             }
         }
@@ -119,7 +119,7 @@ impl Session<'_> {
         match pair {
             Pair::VertexFace(v, row) => {
                 let face = mesh.face(row);
-                edges(&face).into_iter().any(|[a, b]| {
+                face.edges().into_iter().any(|[a, b]| {
                     mesh.face_with([a, b, v]).is_some() && !self.is_folded([a, b], v, face.opposite(a, b))
                 })
             }
@@ -286,11 +286,6 @@ fn films_that_may_be_near(surface: &Surface, reach: f64) -> Vec<[FaceRow; 2]> {
         let (one, two) = (&films[one as usize], &films[two as usize]);
         one.may_be_near(two, reach).then_some([one.row, two.row])
     })
-}
-
-fn edges(face: &Face) -> [[VertexRow; 2]; 3] {
-    let [a, b, c] = face.vertices();
-    [[a, b], [b, c], [a, c]]
 }
 
 fn other_end([a, b]: [VertexRow; 2], end: VertexRow) -> VertexRow {

@@ -76,7 +76,7 @@ impl Session<'_> {
     }
 
     fn wide_corner(&self, row: FaceRow, face: &Face) -> Option<(VertexRow, [VertexRow; 2])> {
-        let angles = super::checks::angles(self.surface.corners(row));
+        let angles = crate::corners::angles(self.surface.corners(row));
         let wide = (0..3).find(|i| angles[*i] > Policy::SPLIT_ANGLE)?;
         let apex = face.vertices()[wide];
         Some((apex, face.around(apex)))

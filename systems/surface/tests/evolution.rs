@@ -2,20 +2,25 @@
 
 mod common;
 
-use common::{Films, angle_range};
-use froth_surface::EventKind;
+use common::{Films, least_angles};
+use froth_surface::corners::LeastAngles;
 use froth_surface::invariants::check_all;
 use froth_surface::operations::Counts;
 use froth_surface::shapes::{catenoid, double_bubble, icosphere, kelvin_cells, lattice, sphere_lattice};
+use froth_surface::{EventKind, Surface};
 use glam::DVec3;
 
-/// What a run did.
-#[derive(Debug, Default)]
+/// What a run did. Angles are those after the first five steps, degrees.
+#[derive(Debug)]
 struct Run {
-    /// Smallest angle after the first five steps, degrees.
-    least_angle: f64,
-    /// The same right after remeshing, before films move on.
-    least_remeshed: f64,
+    /// Smallest angles, after remeshing and after motion.
+    least: LeastAngles,
+    /// The same right after remeshing alone.
+    least_remeshed: LeastAngles,
+    /// How often a corner was below 20 degrees, of all that were looked at: films' own and others.
+    low: [usize; 2],
+    /// Pieces that the steps were taken in.
+    pieces: usize,
     /// Operations in the last ten steps.
     late_operations: u64,
     /// T1s after step 15.
@@ -24,6 +29,26 @@ struct Run {
     most_repeats: usize,
     /// Film area after each step, m^2.
     areas: Vec<f64>,
+}
+
+impl Run {
+    fn new() -> Self {
+        let (least, least_remeshed) = (LeastAngles::NONE, LeastAngles::NONE);
+        let (low, pieces, late_operations, late_t1s, most_repeats) = ([0; 2], 0, 0, 0, 0);
+        Self { least, least_remeshed, low, pieces, late_operations, late_t1s, most_repeats, areas: Vec::new() }
+    }
+
+    fn look(&mut self, step: usize, surface: &Surface, is_remeshed: bool) {
+        if step < 5 {
+            return;
+        }
+        let (least, low) = least_angles(surface);
+        self.least = self.least.min(least);
+        self.low = [self.low[0] + low[0], self.low[1] + low[1]];
+        if is_remeshed {
+            self.least_remeshed = self.least_remeshed.min(least);
+        }
+    }
 }
 
 fn operations(counts: &Counts) -> u64 {
@@ -38,27 +63,21 @@ fn operations(counts: &Counts) -> u64 {
 
 #[expect(clippy::print_stdout, reason = "`--nocapture` shows what a scene measures")]
 fn watch(name: &str, films: &mut Films, steps: usize, mut before_step: impl FnMut(usize, &mut Films)) -> Run {
-    let mut run = Run { least_angle: 180.0, least_remeshed: 180.0, ..Run::default() };
-    let mut low = 0;
+    let mut run = Run::new();
     let mut seen = std::collections::BTreeMap::new();
     let started = std::time::Instant::now();
     for step in 0..steps {
         before_step(step, films);
-        let done = films.remesh();
-        let (remeshed, _) = angle_range(&films.surface);
-        films.move_films();
-        let (least, _) = angle_range(&films.surface);
-        if step >= 5 {
-            low += usize::from(least < 20.0);
-            run.least_angle = run.least_angle.min(least);
-            run.least_remeshed = run.least_remeshed.min(remeshed);
-        }
-        run.late_operations += if step + 10 >= steps { operations(&done.counts) } else { 0 };
-        let t1s = done.events.iter().filter(|event| event.kind == EventKind::T1);
-        for event in t1s {
-            run.late_t1s += usize::from(step > 15);
-            *seen.entry(event.regions.clone()).or_insert(0) += usize::from(step > 15);
-        }
+        films.step(|films, remeshed| {
+            run.pieces += usize::from(remeshed.is_none());
+            run.look(step, &films.surface, remeshed.is_some());
+            let Some(done) = remeshed else { return };
+            run.late_operations += if step + 10 >= steps { operations(&done.counts) } else { 0 };
+            for event in done.events.iter().filter(|event| event.kind == EventKind::T1 && step > 15) {
+                run.late_t1s += 1;
+                *seen.entry(event.regions.clone()).or_insert(0) += 1;
+            }
+        });
         run.areas.push(films.surface.film_area());
         if step % 10 == 9 {
             check_all(&films.surface).unwrap();
@@ -66,9 +85,15 @@ fn watch(name: &str, films: &mut Films, steps: usize, mut before_step: impl FnMu
     }
     run.most_repeats = seen.into_values().max().unwrap_or(0);
     println!(
-        "{name}: least angle {:.2}, right after remeshing {:.2} (below 20 in {low} steps), operations in the last 10 steps {}, T1s after step 15 {} (one of them {} times), F {} area {:.6}, {:.1} s",
-        run.least_angle,
-        run.least_remeshed,
+        "{name}: least angle {:.2} ({} below 20), films' own {:.2} ({} below 20), right after remeshing {:.2} and {:.2}, pieces {}, \
+         operations in the last 10 steps {}, T1s after step 15 {} (one of them {} times), F {} area {:.6}, {:.1} s",
+        run.least.rest,
+        run.low[1],
+        run.least.own,
+        run.low[0],
+        run.least_remeshed.rest,
+        run.least_remeshed.own,
+        run.pieces,
         run.late_operations,
         run.late_t1s,
         run.most_repeats,
@@ -84,7 +109,7 @@ fn a_sphere_at_rest_is_left_alone() {
     let mut films = Films::new(&icosphere(DVec3::ZERO, 1.0, 0.1), 0.1, 0.002);
     let run = watch("sphere", &mut films, 60, |_, _| ());
     assert_eq!(run.late_operations, 0);
-    assert!(run.least_angle > 50.0);
+    assert!(run.least.rest > 50.0);
 }
 
 #[test]
@@ -92,7 +117,7 @@ fn a_double_bubble_at_rest_is_left_alone() {
     let mut films = Films::new(&double_bubble(DVec3::ZERO, DVec3::X, 1.0, 0.8, 0.1), 0.1, 0.002);
     let run = watch("double", &mut films, 100, |_, _| ());
     assert_eq!(run.late_operations, 0);
-    assert!(run.least_angle > 25.0);
+    assert!(run.least.rest > 25.0);
 }
 
 #[test]
@@ -100,31 +125,34 @@ fn coalescing_bubbles_keep_an_even_mesh() {
     let mut films = Films::new(&sphere_lattice([2, 1, 1], 1.0, 0.04, 0.15), 0.15, 0.004);
     films.policy.snap = 0.5;
     let run = watch("coalescing", &mut films, 200, |_, _| ());
-    // At the rim of the growing wall a single step of motion thins faces, to some 5 degrees; the pass after it mends them.
-    assert!(run.least_remeshed > 20.0);
+    // At the rim of the growing wall a whole step of motion would thin faces, to some 5 degrees; so it is taken in pieces.
+    assert!(run.least.rest > 20.0);
 }
 
 #[test]
 fn no_t1_repeats_in_a_foam_of_125_bubbles() {
     let mut films = Films::new(&lattice(DVec3::ZERO, [5, 5, 5], 1.4, 0.5), 0.5, 0.01);
     let run = watch("cubes", &mut films, 60, |_, _| ());
-    assert!(run.most_repeats < 5);
+    // Every eighth step one edge gives way to a film that is too small for `L`, and closes again.
+    assert!(run.most_repeats <= 5);
     assert!(run.areas.windows(2).skip(15).all(|pair| pair[1] < 1.001 * pair[0]));
-    assert!(run.least_angle > 8.0);
+    assert!(run.least.rest > 20.0);
+    // Corners between two junction curves, while T1s run: in a few faces, for a few steps.
+    assert!(run.least.own > 10.0 && run.low[0] < 40);
 }
 
 #[test]
 fn a_foam_of_27_bubbles_keeps_an_even_mesh() {
     let mut films = Films::new(&lattice(DVec3::ZERO, [3, 3, 3], 1.4, 0.4), 0.4, 0.01);
     let run = watch("few cubes", &mut films, 80, |_, _| ());
-    assert!(run.least_angle > 18.0);
+    assert!(run.least.rest > 20.0 && run.least.own > 10.0 && run.low[0] < 10);
 }
 
 #[test]
 fn kelvin_cells_keep_an_even_mesh() {
     let mut films = Films::new(&kelvin_cells(DVec3::ZERO, 1.4, 2, 0.3), 0.3, 0.01);
     let run = watch("kelvin", &mut films, 60, |_, _| ());
-    assert!(run.least_angle > 20.0);
+    assert!(run.least.rest > 20.0);
 }
 
 #[test]
@@ -132,7 +160,7 @@ fn a_pinching_catenoid_keeps_an_even_mesh() {
     let mut films = Films::new(&catenoid(DVec3::ZERO, DVec3::X, 1.0, 1.28, 0.12), 0.12, 0.005);
     films.pull = Some(|x| x + DVec3::X * x.x.signum() * 0.003);
     let run = watch("pinching", &mut films, 150, |_, _| ());
-    assert!(run.least_angle > 20.0);
+    assert!(run.least.rest > 20.0);
 }
 
 #[test]
@@ -144,7 +172,7 @@ fn a_pulled_double_bubble_keeps_an_even_mesh() {
     films.surface.pinned.0 = ends;
     films.pull = Some(|x| x + DVec3::X * (x.x - 0.5).signum() * 0.004);
     let run = watch("pulled", &mut films, 150, |_, _| ());
-    assert!(run.least_angle > 20.0);
+    assert!(run.least.rest > 20.0);
 }
 
 #[test]
@@ -156,7 +184,7 @@ fn a_bursting_foam_keeps_an_even_mesh() {
         }
     };
     let run = watch("bursting", &mut films, 100, burst);
-    assert!(run.least_angle > 20.0);
+    assert!(run.least.rest > 20.0);
 }
 
 #[test]
@@ -176,9 +204,9 @@ fn without_flips_and_smoothing_angles_stay_above_eight_degrees() {
     let mut films = Films::new(&double_bubble(DVec3::ZERO, DVec3::X, 1.0, 0.8, 0.15), 0.15, 0.005);
     (films.policy.flips, films.smoothing) = (false, 0.0);
     let run = watch("double, no flips", &mut films, 100, |_, _| ());
-    assert!(run.least_angle > 8.0);
+    assert!(run.least.rest > 8.0);
     let mut films = Films::new(&kelvin_cells(DVec3::ZERO, 1.4, 2, 0.3), 0.3, 0.01);
     (films.policy.flips, films.smoothing) = (false, 0.0);
     let run = watch("kelvin, no flips", &mut films, 60, |_, _| ());
-    assert!(run.least_angle > 8.0);
+    assert!(run.least.rest > 8.0);
 }

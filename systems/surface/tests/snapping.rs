@@ -135,10 +135,10 @@ fn three_snaps_of_facing_faces_make_one_film_between_the_two_bubbles() {
     assert_eq!((pair, events[0].regions[2]), ([Region(1), Region(2)], Region(0)));
 }
 
-/// A bubble in the shape of a U whose arms are `gap` apart.
+/// A bubble in the shape of a U whose arms are `gap` apart, but for their feet, which are apart by 1.
 fn horseshoe(gap: f64) -> LabelledTriangles {
-    let mut set = voxels([3, 1, 2], 1.0, &[1, 1, 1, 1, 0, 1]);
-    set.positions.iter_mut().filter(|x| x.x > 2.5).for_each(|x| x.x -= 1.0 - gap);
+    let mut set = voxels([3, 1, 3], 1.0, &[1, 1, 1, 1, 0, 1, 1, 0, 1]);
+    set.positions.iter_mut().filter(|x| x.x > 2.5 && x.z > 2.5).for_each(|x| x.x -= 1.0 - gap);
     set
 }
 
@@ -153,8 +153,8 @@ fn a_bubble_that_touches_itself_opens_a_window() {
         check_all(&surface).unwrap();
     }
     let windows: Vec<_> = events.iter().filter(|event| event.kind == EventKind::Window).collect();
-    assert!(!windows.is_empty(), "{events:?}");
-    assert!(windows.iter().all(|event| event.regions.as_slice() == [Region(1), Region(0)]), "{windows:?}");
+    assert_eq!(windows.len(), 1, "{events:?}");
+    assert_eq!(windows[0].regions.as_slice(), [Region(1), Region(0)]);
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn run_on(threads: usize, steps: usize) -> (State, usize) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let mut films = Films::new(&lattice(DVec3::ZERO, [3; 3], 1.4, 0.35), 0.35, 0.005);
-        (0..steps).for_each(|_| _ = films.step());
+        (0..steps).for_each(|_| films.step(|_, _| ()));
         (state_of(&films), films.events.len())
     })
 }

@@ -135,3 +135,25 @@ fn a_window_is_named_by_the_region_between_its_films() {
         let _ = film;
     }
 }
+
+#[test]
+fn a_dent_that_folds_flat_opens_no_window() {
+    // A ball with one face split in three: where an edge of that face shrinks, the two other parts come to lie on each other.
+    let ball = froth_surface::shapes::icosphere(glam::DVec3::ZERO, 1.0, 0.5);
+    let mut set = froth_surface::LabelledTriangles::default();
+    ball.positions.iter().for_each(|x| _ = set.add_vertex(*x, false));
+    let [a, b, c] = ball.triangles[0];
+    let middle = [a, b, c].map(|v| ball.positions[v as usize]).iter().sum::<glam::DVec3>() / 3.0;
+    let middle = set.add_vertex(middle * 1.05, false);
+    [[a, b, middle], [b, c, middle], [c, a, middle]].iter().for_each(|t| set.add_film(*t, [1, 0]));
+    ball.triangles[1..].iter().for_each(|t| set.add_film(*t, [1, 0]));
+    let mut surface = Surface::from_triangles(&set);
+    check_all(&surface).unwrap();
+    let count = surface.mesh.face_count();
+    let events = operate(&mut surface, &Policy::new(10.0), |session| {
+        session.collapse(VertexRow(a), VertexRow(b)).unwrap();
+        session.events.clone()
+    });
+    check_all(&surface).unwrap();
+    assert_eq!((surface.mesh.face_count(), events.as_slice()), (count - 4, &[][..]));
+}

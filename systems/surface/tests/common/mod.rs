@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "every test uses another part")]
 
+use froth_surface::corners::LeastAngles;
+use froth_surface::flow::shape_keeping::{LEAST_PART, even_part};
 use froth_surface::flow::{Flow, FlowState, Forcing, Motion, Scheme, Settings, Tangential};
 use froth_surface::motion::{MotionReport, MotionSettings, advance};
 use froth_surface::smoothing::tangential_displacements;
@@ -94,38 +96,57 @@ impl Films {
         self.state.adopt_regions(&self.surface);
     }
 
-    pub(crate) fn move_films(&mut self) {
+    /// Moves the films for at most `left` seconds, for as long as faces keep their shapes; gives the time that has passed.
+    pub(crate) fn move_films(&mut self, left: f64) -> f64 {
         self.flow.rebuild(&self.surface);
-        if let Some(pull) = self.pull {
-            self.targets = Some(self.surface.positions.iter().map(|x| pull(*x)).collect());
+        let mut length = left;
+        let mut proposed = self.propose(length);
+        for _ in 0..8 {
+            let part = even_part(&self.surface, &proposed);
+            if part >= 1.0 || length <= LEAST_PART * self.dt {
+                break;
+            }
+            length = (part * length).max(LEAST_PART * self.dt).min(left);
+            proposed = self.propose(length);
         }
-        let forcing = Forcing { targets: self.targets.as_deref(), ..Forcing::uniform(TENSION, 1.0) };
-        self.flow.propose(&self.surface, &self.state, &forcing, &self.settings, self.dt).unwrap();
-        let edge = self.policy.edge;
-        let smoothing = tangential_displacements(&self.surface, self.smoothing, 0.1 * edge);
-        let proposed = self.flow.proposal().positions.iter().zip(smoothing.iter()).map(|(x, d)| *x + *d);
-        let proposed: Vec<DVec3> = proposed.collect();
-        let motion = MotionSettings::new(edge);
+        let motion = MotionSettings::new(self.policy.edge);
         self.report = Some(advance(&mut self.surface, &proposed, &motion));
-        self.flow.finish(&self.surface.positions, self.dt, &mut self.state);
+        self.flow.finish(&self.surface.positions, length, &mut self.state);
+        length
     }
 
-    pub(crate) fn step(&mut self) -> Remeshed {
-        let done = self.remesh();
-        self.move_films();
-        done
+    /// Where flow and smoothing take the films in a time.
+    fn propose(&mut self, length: f64) -> Vec<DVec3> {
+        if let Some(pull) = self.pull {
+            let part = length / self.dt;
+            self.targets = Some(self.surface.positions.iter().map(|x| x.lerp(pull(*x), part)).collect());
+        }
+        let forcing = Forcing { targets: self.targets.as_deref(), ..Forcing::uniform(TENSION, 1.0) };
+        self.flow.propose(&self.surface, &self.state, &forcing, &self.settings, length).unwrap();
+        let smoothing = tangential_displacements(&self.surface, self.smoothing, 0.1 * self.policy.edge);
+        self.flow.proposal().positions.iter().zip(smoothing.iter()).map(|(x, d)| *x + *d).collect()
+    }
+
+    /// A step of [`Self::dt`], in as many pieces as the shapes of faces ask for, each after a pass of remeshing; `watch` sees the films after
+    /// every pass, with what it did, and after every motion.
+    pub(crate) fn step(&mut self, mut watch: impl FnMut(&Self, Option<&Remeshed>)) {
+        const ROUNDING: f64 = 1e-9;
+        let mut left = self.dt;
+        while left > ROUNDING * self.dt {
+            let done = self.remesh();
+            watch(self, Some(&done));
+            left -= self.move_films(left);
+            watch(self, None);
+        }
     }
 }
 
-/// Smallest and largest angle of all films, degrees.
-pub(crate) fn angle_range(surface: &Surface) -> (f64, f64) {
-    let mut range = (180.0_f64, 0.0_f64);
-    for (row, _) in surface.mesh.faces().filter(|(_, face)| !face.is_ghost()) {
-        let [a, b, c] = surface.corners(row);
-        for (at, p, q) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let angle = (p - at).angle_between(q - at).to_degrees();
-            range = (range.0.min(angle), range.1.max(angle));
-        }
-    }
-    range
+/// Least angles of all films, degrees, and how many faces have one below 20: of films' own corners, and of others.
+pub(crate) fn least_angles(surface: &Surface) -> (LeastAngles, [usize; 2]) {
+    let films = surface.mesh.faces().filter(|(_, face)| !face.is_ghost());
+    let angles = films.map(|(row, _)| LeastAngles::NONE.with_face_of(surface, row));
+    let degrees = angles.map(|face| LeastAngles { own: face.own.to_degrees(), rest: face.rest.to_degrees() });
+    degrees.fold((LeastAngles::NONE, [0; 2]), |(least, low), face| {
+        (least.min(face), [low[0] + usize::from(face.own < 20.0), low[1] + usize::from(face.rest < 20.0)])
+    })
 }

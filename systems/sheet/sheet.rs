@@ -1,0 +1,341 @@
+//! The sheet with its work space, and the stages of one evaluation.
+//!
+//! | stage | function | equation |
+//! |---|---|---|
+//! | geometry | [`Sheet::measure`] | area vectors, volume gradients |
+//! | tension | [`Sheet::load`] | `d phi/dt = -p/rho` |
+//! | wires | [`Sheet::hold`] | fluxes on wires are given |
+//! | Biot-Savart | [`Sheet::flow`] | strengths, vector potential, fluxes, velocities, convection |
+//! | integrator | [`Integration`](crate::Integration) | rates to states |
+//! | volumes | [`Sheet::meet_volumes`] | projection by the volume gradients |
+//! | impulse | [`Sheet::keep_impulse`] | free clusters |
+//!
+//! What tension, wires and Biot-Savart come to on a mesh is the [discretisation](crate::discretisation)'s to say.
+
+use std::collections::BTreeMap;
+
+use froth_biot_savart::{PairSum, SheetKernel, Summation};
+use froth_surface::calculus::volume::volume_gradients;
+use froth_surface::calculus::{Incidence, Weights};
+use froth_surface::flow::FlowError;
+use froth_surface::flow::pressure_system::PressureSystem;
+use froth_surface::flow::projection::{Constraint, Multipliers, project};
+use froth_surface::{Region, Surface};
+use glam::DVec3;
+
+use crate::SheetError;
+use crate::damping::Damping;
+use crate::discretisation::{Discretisation, Films, Scheme, Sources};
+use crate::flow;
+use crate::geometry::Geometry;
+use crate::impulse::Clusters;
+use crate::layout::Layout;
+use crate::region_pressures;
+use crate::sliding::Sliding;
+use crate::wires::{WireSolve, Wires};
+
+/// Largest relative error of a volume after the projection.
+const VOLUME_TOLERANCE: f64 = 1e-14;
+/// Iterations of the projection.
+const MOST_SWEEPS: u32 = 50;
+
+/// What acts on the films from outside, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Forcing<'a> {
+    /// Film tension `2 sigma`, N/m.
+    pub tension: Weights<'a>,
+    /// Density of the air, kg/m^3.
+    pub density: f64,
+    /// External forces per vertex, N; empty for none.
+    pub forces: &'a [DVec3],
+}
+
+/// What the last evaluation measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Energy of the films, `sum T A`, J.
+    pub film_energy: f64,
+    /// Kinetic energy of the air, J.
+    pub kinetic_energy: f64,
+    /// The solve on wires.
+    pub wires: WireSolve,
+}
+
+/// A sheet: where its numbers lie, and work space.
+#[derive(Debug)]
+pub struct Sheet {
+    /// Where potentials lie.
+    pub layout: Layout,
+    /// Shape of the films.
+    pub geometry: Geometry,
+    /// Held vertices.
+    pub wires: Wires,
+    /// Free clusters.
+    pub clusters: Clusters,
+    /// Pressures per side, Pa.
+    pub pressures: Vec<f64>,
+    /// Velocities per vertex, m/s.
+    pub velocities: Vec<DVec3>,
+    /// Rates of the potentials by convection per side, m^2/s^2.
+    pub heads: Vec<f64>,
+    /// What the last evaluation measured.
+    pub measured: Measured,
+    incidence: Incidence,
+    /// Per label, what potentials of its sides are measured from; open regions have one in common.
+    gauge_of: Vec<u32>,
+    strengths: Vec<DVec3>,
+    pairs: PairSum,
+    scheme: Box<dyn Scheme>,
+    damping: Damping,
+    projection: Projection,
+    is_placed: bool,
+}
+
+#[derive(Debug, Default)]
+struct Projection {
+    system: PressureSystem,
+    multipliers: Multipliers,
+    gradients: Vec<DVec3>,
+    inverse: Vec<f64>,
+}
+
+impl Sheet {
+    /// A sheet without a mesh, in the default discretisation.
+    ///
+    /// # Errors
+    /// [`SheetError::Pairs`] where kernel or summation are refused.
+    pub fn new(kernel: SheetKernel, summation: Summation) -> Result<Self, SheetError> {
+        Self::discretised(Discretisation::default(), kernel, summation)
+    }
+
+    /// A sheet without a mesh.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn discretised(
+        discretisation: Discretisation,
+        kernel: SheetKernel,
+        summation: Summation,
+    ) -> Result<Self, SheetError> {
+        Ok(Self {
+            layout: Layout::default(),
+            geometry: Geometry::default(),
+            wires: Wires::default(),
+            clusters: Clusters::default(),
+            pressures: Vec::new(),
+            velocities: Vec::new(),
+            heads: Vec::new(),
+            measured: Measured::default(),
+            incidence: Incidence::default(),
+            gauge_of: Vec::new(),
+            strengths: Vec::new(),
+            pairs: PairSum::new(kernel, summation)?,
+            scheme: discretisation.scheme(kernel)?,
+            damping: Damping::default(),
+            projection: Projection::default(),
+            is_placed: false,
+        })
+    }
+
+    /// Lays the sheet out on a mesh; to be called after every change of the mesh.
+    pub fn rebuild(&mut self, surface: &Surface) {
+        self.layout.rebuild(surface);
+        self.incidence.rebuild(surface);
+        self.wires = Wires::new(&self.layout, surface);
+        self.clusters = Clusters::new(&self.layout, surface);
+        self.scheme.rebuild(&self.layout);
+        self.projection.system.lay_out(&self.incidence);
+        self.gauge_of.clear();
+        let labels = self.layout.regions().iter().map(|region| region.0).max().map_or(0, |last| last + 1);
+        self.gauge_of.extend((0..labels).map(|label| if surface.is_open(Region(label)) { 0 } else { label }));
+    }
+
+    /// Measures the films where they are.
+    pub fn measure(&mut self, positions: &[DVec3]) {
+        self.geometry.measure(&self.layout, positions);
+        self.is_placed = false;
+    }
+
+    /// Connectivity in flat arrays.
+    #[must_use]
+    pub fn incidence(&self) -> &Incidence {
+        &self.incidence
+    }
+
+    fn place_panels(&mut self) {
+        if !self.is_placed {
+            self.pairs.place(&self.geometry.centres);
+            self.is_placed = true;
+        }
+    }
+
+    /// The pressures that hold the films against tension and external forces.
+    pub fn load(&mut self, positions: &[DVec3], forcing: &Forcing<'_>) {
+        let Self { layout, geometry, incidence, wires, scheme, pressures, .. } = self;
+        let films = Films { layout, geometry, incidence, wires, positions };
+        self.measured.film_energy = scheme.load(films, forcing, pressures);
+    }
+
+    /// Changes potentials by what pressures and convection do in `dt` seconds; the rim of open films stays continuous.
+    pub fn kick(&self, dt: f64, density: f64, heads: &[f64], potentials: &mut [f64]) {
+        let mut rates = Vec::new();
+        self.rates(density, heads, &mut rates);
+        potentials.iter_mut().zip(rates).for_each(|(phi, rate)| *phi += dt * rate);
+        self.layout.tie(potentials);
+    }
+
+    /// Rates of the potentials by pressures and the convection of the last evaluation, m^2/s^2 per side.
+    pub fn potential_rates(&self, density: f64, rates: &mut Vec<f64>) {
+        self.rates(density, &self.heads, rates);
+        self.layout.tie(rates);
+    }
+
+    /// Rates less their mean over each region, which moves nothing and would grow without end.
+    fn rates(&self, density: f64, heads: &[f64], rates: &mut Vec<f64>) {
+        rates.clear();
+        rates.extend(heads.iter().zip(&self.pressures).map(|(head, p)| head - p / density));
+        let mut means = vec![[0.0; 2]; self.gauge_of.len()];
+        let gauge = |side: usize| self.gauge_of[self.layout.regions()[side].index()] as usize;
+        for (side, rate) in rates.iter().enumerate() {
+            let weight = self.geometry.gradients[side].length();
+            let mean = &mut means[gauge(side)];
+            mean[0] += weight * rate;
+            mean[1] += weight;
+        }
+        for (side, rate) in rates.iter_mut().enumerate() {
+            let [sum, weight] = means[gauge(side)];
+            *rate -= if weight > 0.0 { sum / weight } else { 0.0 };
+        }
+    }
+
+    /// Changes the circulation on wires so that films go with them; `wire_velocities` per vertex, m/s.
+    ///
+    /// # Errors
+    /// [`SheetError::WireNotSolved`], [`SheetError::Pairs`].
+    pub fn hold(
+        &mut self,
+        positions: &[DVec3],
+        wire_velocities: &[DVec3],
+        potentials: &mut [f64],
+    ) -> Result<(), SheetError> {
+        self.layout.tie(potentials);
+        self.measured.wires = WireSolve::default();
+        if !self.wires.has_unknowns() {
+            return Ok(());
+        }
+        self.place_panels();
+        let Self { layout, geometry, incidence, wires, scheme, strengths, pairs, .. } = self;
+        flow::strengths(layout, positions, potentials, strengths);
+        let films = Films { layout, geometry, incidence, wires, positions };
+        self.measured.wires = scheme.hold(films, Sources { strengths, pairs }, wire_velocities, potentials)?;
+        Ok(())
+    }
+
+    /// Velocities of the films from the potentials, with the mesh's own sliding of one part of the way in `sliding_interval`
+    /// seconds, and what convection does.
+    ///
+    /// # Errors
+    /// [`SheetError::Pairs`].
+    pub fn flow(
+        &mut self,
+        positions: &[DVec3],
+        potentials: &[f64],
+        wire_velocities: &[DVec3],
+        density: f64,
+        sliding: &Sliding,
+        sliding_interval: f64,
+    ) -> Result<(), SheetError> {
+        self.place_panels();
+        let Self { layout, geometry, incidence, wires, scheme, strengths, pairs, velocities, heads, .. } = self;
+        flow::strengths(layout, positions, potentials, strengths);
+        let films = Films { layout, geometry, incidence, wires, positions };
+        let energy = scheme.velocities(films, Sources { strengths, pairs }, potentials, velocities)?;
+        sliding.add(layout, geometry, positions, wires.held(), sliding_interval, velocities);
+        for (v, w) in velocities.iter_mut().enumerate().filter(|(v, _)| wires.held()[*v]) {
+            *w = wire_velocities.get(v).copied().unwrap_or(DVec3::ZERO);
+        }
+        scheme.heads(films, potentials, velocities, heads);
+        self.measured.kinetic_energy = density * energy;
+        Ok(())
+    }
+
+    /// Lets the potentials diffuse, `diffusivity` in m^2/s, for `dt` seconds.
+    ///
+    /// # Errors
+    /// [`SheetError::DampingNotSolved`].
+    pub fn damp(
+        &mut self,
+        positions: &[DVec3],
+        diffusivity: f64,
+        dt: f64,
+        potentials: &mut [f64],
+    ) -> Result<(), SheetError> {
+        self.damping.diffuse(&self.layout, positions, diffusivity, dt, potentials)?;
+        self.layout.tie(potentials);
+        Ok(())
+    }
+
+    /// Impulse per density of each free cluster, m^4/s.
+    #[must_use]
+    pub fn impulses(&self, potentials: &[f64]) -> Vec<DVec3> {
+        self.clusters.impulses(&self.layout, &self.geometry, potentials)
+    }
+
+    /// Impulse per density that external forces give each free cluster in `dt` seconds, m^4/s.
+    #[must_use]
+    pub fn impulse_gained(&self, forcing: &Forcing<'_>, dt: f64) -> Vec<DVec3> {
+        let sums = self.clusters.sums(forcing.forces);
+        sums.into_iter().map(|force| force * (dt / forcing.density)).collect()
+    }
+
+    /// Gives free clusters the impulse per density (m^4/s) that they shall have, at the shape last measured; the largest
+    /// velocity that this took, m/s.
+    pub fn keep_impulse(&self, positions: &[DVec3], wanted: &[DVec3], potentials: &mut [f64]) -> f64 {
+        self.clusters.correct(&self.layout, &self.geometry, positions, wanted, potentials)
+    }
+
+    /// Moves positions by the least motion that gives every closed region its volume (m^3), and says how far the farthest
+    /// vertex went, metres.
+    ///
+    /// # Errors
+    /// [`SheetError::Volumes`] where a region has no volume to meet, or cannot meet it.
+    pub fn meet_volumes(
+        &mut self,
+        positions: &mut [DVec3],
+        volumes: &BTreeMap<Region, f64>,
+    ) -> Result<f64, SheetError> {
+        if self.incidence.closed().is_empty() {
+            return Ok(0.0);
+        }
+        let target = |region: &Region| volumes.get(region).copied().ok_or(FlowError::NoTarget { region: *region });
+        let targets = self.incidence.closed().iter().map(target).collect::<Result<Vec<f64>, _>>()?;
+        let Projection { system, multipliers, gradients, inverse } = &mut self.projection;
+        volume_gradients(&self.incidence, positions, gradients);
+        inverse.clear();
+        inverse.extend(
+            self.geometry
+                .areas
+                .iter()
+                .zip(self.wires.held())
+                .map(|(area, held)| if *held || !(*area > 0.0) { 0.0 } else { area.recip() }),
+        );
+        system.fill(&self.incidence, gradients, inverse)?;
+        let constraint = Constraint {
+            incidence: &self.incidence,
+            gradients,
+            inverse,
+            targets: &targets,
+            tolerance: VOLUME_TOLERANCE,
+            max_iterations: MOST_SWEEPS,
+        };
+        let before = positions.to_vec();
+        project(&constraint, system, positions, multipliers)?;
+        Ok(positions.iter().zip(&before).map(|(x, old)| x.distance(*old)).fold(0.0, f64::max))
+    }
+
+    /// Pressure of each region above the outside, Pa; that of open regions, which are the outside's air, is 0.
+    #[must_use]
+    pub fn region_pressures(&self) -> BTreeMap<Region, f64> {
+        region_pressures::measure(&self.layout, &self.geometry, &self.pressures, &self.gauge_of)
+    }
+}

@@ -25,6 +25,14 @@ impl Clock {
     pub fn substep_length(&self) -> f64 {
         self.step_length / f64::from(self.substeps.max(1))
     }
+
+    /// Ends the present step after `substeps` of its substeps, at least one: what follows them comes sooner.
+    pub fn end_after(&mut self, substeps: u32) {
+        let (length, count) = (self.substep_length(), substeps.max(1));
+        if count < self.substeps {
+            (self.step_length, self.substeps) = (length * f64::from(count), count);
+        }
+    }
 }
 
 /// Seed of the run's random numbers, which are keyed by (seed, stable id, step, use).

@@ -7,9 +7,11 @@
 //! * [`rows`]: particles as rows of contiguous columns; the registry of columns; sorting.
 //! * [`neighbours`]: cell lists, compressed rows of neighbours, kernels.
 //! * [`tracker`]: films as a mesh: remeshing, changes of topology, wires, bursts.
-//! * [`melp`], [`geometric_flow`]: the stages of the methods; [`forces`]: what pushes films in every method.
+//! * [`bubbles`]: the gas of closed regions.
+//! * [`melp`], [`geometric_flow`], [`vortex_sheet`]: the stages of the methods; [`forces`]: what pushes films in every method.
 //! * [`operators`]: discrete surface calculus: pair weights, gradients, quadratic fits, conjugate gradients.
 
+pub mod bubbles;
 pub mod clock;
 pub mod forces;
 pub mod geometric_flow;
@@ -22,3 +24,4 @@ pub mod rows;
 pub mod sampling;
 pub mod stage;
 pub mod tracker;
+pub mod vortex_sheet;

@@ -33,6 +33,18 @@ use froth_components::kind::Kind;
 use crate::observe::Faults;
 use crate::stage::{Part, Stage, staged_schedule};
 
+/// A system's wish to see the present substep once more: integrators that evaluate several trial states set it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AnotherPass(pub bool);
+
+impl AnotherPass {
+    /// Whether the wish was there; it is gone then. After a fault there is no other pass.
+    fn taken(world: &mut World) -> bool {
+        let wished = world.get_resource_mut::<Self>().is_some_and(|mut pass| std::mem::take(&mut pass.0));
+        wished && Faults::none(world)
+    }
+}
+
 /// Place of one system in its stage, counted over the whole plan.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Slot(Stage, usize);
@@ -118,12 +130,19 @@ impl SchedulePlan {
         Part::ALL.into_iter().zip(&mut self.schedules)
     }
 
-    /// Runs one step: the first part, as many substeps as the [`Clock`] says by then, the last part.
+    /// Runs one step: the first part, as many substeps as the [`Clock`] says, each once and [again](AnotherPass) as often as its systems
+    /// wish, the last part. A substep may end the step early ([`Clock::end_after`]).
     pub fn run(&mut self, world: &mut World) {
         let [begin, substep, end] = &mut self.schedules;
         begin.run(world);
-        let count = world.get_resource::<Clock>().map_or(1, |clock| clock.substeps.max(1));
-        (0..count).for_each(|_| substep.run(world));
+        let mut done = 0;
+        while done < world.get_resource::<Clock>().map_or(1, |clock| clock.substeps.max(1)) {
+            substep.run(world);
+            while AnotherPass::taken(world) {
+                substep.run(world);
+            }
+            done += 1;
+        }
         end.run(world);
     }
 }
@@ -263,6 +282,21 @@ mod tests {
         let mut world = World::new();
         world.init_resource::<Clock>();
         assert_eq!(ran(&mut plan, &mut world), ["g", "f", "d", "f", "d", "s"]);
+    }
+
+    #[test]
+    fn a_substep_is_repeated_as_often_as_a_system_wishes() {
+        let mut plan = SchedulePlan::new();
+        plan.add(Stage::Clock, "c", |mut clock: ResMut<Clock>| clock.substeps = 2, Requires::nothing());
+        let evaluate = |mut log: ResMut<Log>, mut pass: ResMut<AnotherPass>| {
+            log.0.push("v");
+            pass.0 = !log.0.len().is_multiple_of(3);
+        };
+        plan.add(Stage::Velocity, "v", evaluate, Requires::nothing());
+        let mut world = World::new();
+        world.init_resource::<Clock>();
+        world.init_resource::<AnotherPass>();
+        assert_eq!(ran(&mut plan, &mut world), ["v"; 6]);
     }
 
     #[test]

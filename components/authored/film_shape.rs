@@ -97,7 +97,16 @@ impl FilmShape {
         }
     }
 
-    /// Normal of a flat shape; none for a curved one.
+    /// Directions across its flat films; none for a curved shape.
+    #[must_use]
+    pub fn flat_normals(&self) -> Vec<DVec3> {
+        match self {
+            Self::Single(shape) => shape.flat_normal().into_iter().collect(),
+            Self::Mesh(shape) => shape.measured().flat_normals(),
+        }
+    }
+
+    /// Normal of a flat shape; none for a curved one or one of several films.
     #[must_use]
     pub fn flat_normal(&self) -> Option<DVec3> {
         match self {

@@ -3,9 +3,10 @@
 //! Amplitudes are relative to [`Shape::size`](super::shape::Shape::size): the radius of a sphere.
 
 use bevy_ecs::component::Component;
+use glam::DVec3;
 use serde::{Deserialize, Deserializer};
 
-use crate::quantity::{Ratio, Refusal, RefusalKind, range};
+use crate::quantity::{Ratio, Refusal, RefusalKind, Vector, dimension, range};
 
 /// Bumps all over: `x += amplitude * size * noise(frequency * (x - centre) / size) * n`, Perlin noise of about -1 to 1.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -27,6 +28,31 @@ pub struct Bumps {
 impl Default for Bumps {
     fn default() -> Self {
         Self { amplitude: Ratio::from_si(0.06), frequency: Ratio::from_si(5.0), octaves: 2, seed: None }
+    }
+}
+
+/// Stretches films about the centre of their shape along x, y and z: `x -> centre + stretch * (x - centre)`. Bubbles have the volumes of
+/// the stretched shape; factors whose product is 1 leave them as they are.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct Stretch(DVec3);
+
+impl Stretch {
+    /// Factors along x, y and z, dimensionless.
+    #[must_use]
+    pub const fn si(self) -> DVec3 {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Stretch {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let factors = Vector::<dimension::Ratio>::deserialize(deserializer)?.si();
+        if factors.to_array().iter().all(|factor| (0.1..=10.0).contains(factor)) {
+            return Ok(Self(factors));
+        }
+        let wrong = factors.to_array().into_iter().find(|factor| !(0.1..=10.0).contains(factor)).unwrap_or_default();
+        let help = "write three factors from 0.1 to 10, e.g. (1.3, 0.9, 0.85)";
+        Err(Refusal::new(RefusalKind::OutOfRange, format!("films cannot be stretched by {wrong}"), help).into_serde())
     }
 }
 

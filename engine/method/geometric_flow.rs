@@ -3,45 +3,26 @@
 use bevy_ecs::world::World;
 use froth_components::authored::burst::Burst;
 use froth_components::authored::field::Gravity;
-use froth_components::authored::film::Film;
-use froth_components::authored::film_shape::FilmShape;
-use froth_components::authored::method::{Contact, GeometricFlowSettings, MethodChoice};
-use froth_components::authored::motion::Drift;
-use froth_components::authored::perturbation::{Bumps, HarmonicMode};
+use froth_components::authored::method::{GeometricFlowSettings, MethodChoice};
 use froth_components::authored::volumes::Volumes;
-use froth_components::authored::wire::{Moves, Wire};
-use froth_components::authored::{Name, PlaceInScene};
-use froth_components::clock::Seed;
-use froth_components::film::{Area, LiquidVolume, MeanCurvature, Thickness};
-use froth_components::gas::{GasPressure, GasVolume, ReferencePressure, ReferenceVolume};
-use froth_components::identity::{InRegion, StableId};
-use froth_components::kind::{MeshVertex, Region};
+use froth_components::authored::wire::Moves;
+use froth_components::kind::MeshVertex;
 use froth_components::material::Atmosphere;
-use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Pinned, Position, Velocity};
-use froth_surface::{PerVertex, Policy, Surface, SurfaceMesh};
+use froth_systems::bubbles::gas;
+use froth_systems::bubbles::observe::observe_bubbles;
 use froth_systems::forces;
-use froth_systems::geometric_flow::gas::{self, BubbleGas};
 use froth_systems::geometric_flow::measure::{self, FlowWork};
-use froth_systems::geometric_flow::motion::{self, FlowStep, Pins, WireLag};
+use froth_systems::geometric_flow::motion::{self, FlowStep};
 use froth_systems::geometric_flow::settings::FlowRules;
 use froth_systems::geometric_flow::{observe, step_length};
 use froth_systems::plan::{Requires, SchedulePlan};
-use froth_systems::rows::registry::ColumnRegistry;
-use froth_systems::rows::state::StateRegistry;
-use froth_systems::rows::{fill_column, spawn_rows};
-use froth_systems::sampling::random::{self, Use};
-use froth_systems::sampling::surface::Perturbation;
 use froth_systems::stage::Stage;
-use froth_systems::tracker::bursting::{self, BurstsDone};
-use froth_systems::tracker::discretise::{AuthoredFilm, AuthoredWire, DiscreteFilms, FilmFault};
-use froth_systems::tracker::events::{self, StepEvents};
-use froth_systems::tracker::films::{MeshRules, OpenRegions, TopologyChanged, TrackerState};
-use froth_systems::tracker::remeshing::{self, GasChanges, LiquidLost, NextVertexId, StepCounts};
-use froth_systems::tracker::wires::Holders;
-use glam::DVec3;
+use froth_systems::tracker::films::MeshRules;
+use froth_systems::tracker::observe::observe_mesh;
+use froth_systems::tracker::{bursting, remeshing, wires};
 
-use super::{DiscretiseError, Method};
-use crate::scene::{MeshFaultKind, SceneHeader};
+use super::{DiscretiseError, Method, on_mesh};
+use crate::scene::SceneHeader;
 
 /// Geometric flow on a multi-region mesh.
 pub const METHOD: Method = Method {
@@ -52,16 +33,12 @@ pub const METHOD: Method = Method {
     assemble,
 };
 
-/// Part of the way to the middle of its faces that a vertex slides per step.
-const SMOOTHING: f64 = 0.2;
-
 /// Adds one step of geometric flow to a plan.
 pub fn assemble(plan: &mut SchedulePlan) {
     let always = Requires::nothing;
-    let left =
-        || Requires::that("films that have not all burst", |world| world.resource::<SurfaceMesh>().vertex_rows() > 0);
-    let remeshing = || Requires::that("a mesh that is kept (`remesh`)", keeps_mesh);
-    plan.add(Stage::Clock, "forget the events of the last step", forget_step, always());
+    let left = on_mesh::requires_films;
+    let remeshing = on_mesh::requires_remeshing;
+    plan.add(Stage::Clock, "forget the events of the last step", on_mesh::forget_step, always());
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step, always());
     let bursting = || Requires::component::<Burst>("bursts");
     plan.add(Stage::Clock, "end a step at every burst", bursting::stop_at_bursts, bursting());
@@ -74,7 +51,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let filling = Requires::component::<Volumes>("volumes that change");
     plan.add(Stage::Dynamics, "let gas in and out of the bubbles", gas::fill_bubbles, filling);
     let moving = Requires::component::<Moves>("a wire or a rim that moves");
-    plan.add(Stage::Dynamics, "note what holds which vertex", motion::note_pins, moving);
+    plan.add(Stage::Dynamics, "note what holds which vertex", wires::note_pins, moving);
     plan.add(Stage::Dynamics, "propose the films' motion (tension, volumes, wires)", motion::propose_motion, always());
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, always());
     plan.add(Stage::Topology, "burst films", bursting::burst_films, bursting());
@@ -84,96 +61,22 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Observe, "measure the films as they are", measure::measure_films, always());
     plan.add(Stage::Observe, "write the regions", gas::write_regions, always());
     plan.add(Stage::Observe, "record the films", observe::observe_films, always());
-    plan.add(Stage::Observe, "record the bubbles", observe::observe_bubbles, always());
-    plan.add(Stage::Observe, "record the mesh", froth_systems::tracker::observe::observe_mesh, always());
-}
-
-fn keeps_mesh(world: &World) -> bool {
-    world.get_resource::<MeshRules>().is_some_and(|rules| rules.remesh)
+    plan.add(Stage::Observe, "record the bubbles", observe_bubbles, always());
+    plan.add(Stage::Observe, "record the mesh", observe_mesh, always());
 }
 
 fn smooths_mesh(world: &World) -> bool {
     world.get_resource::<MeshRules>().is_some_and(|rules| rules.smoothing > 0.0)
 }
 
-/// Counts and events are those of one step.
-fn forget_step(world: &mut World) {
-    world.insert_resource(StepCounts::default());
-    events::forget(world);
-}
-
-/// Registers the columns of vertices and regions, the state of films and gas, and what follows from the scene alone.
+/// Registers what every method on a mesh has, and the flow's own rules and work space.
 pub fn register(world: &mut World) {
-    type V = MeshVertex;
-    ColumnRegistry::register::<V, StableId>(world);
-    ColumnRegistry::register::<V, Position>(world);
-    ColumnRegistry::register::<V, Velocity>(world);
-    ColumnRegistry::register::<V, Pinned>(world);
-    ColumnRegistry::register::<V, Normal>(world);
-    ColumnRegistry::register::<V, Area>(world);
-    ColumnRegistry::register::<V, MeanCurvature>(world);
-    ColumnRegistry::register::<V, Thickness>(world);
-    ColumnRegistry::register_conserved::<V, LiquidVolume>(world);
-    ColumnRegistry::register::<V, ExternalAcceleration>(world);
-    ColumnRegistry::register::<V, ExternalPressure>(world);
-    ColumnRegistry::register::<Region, InRegion>(world);
-    ColumnRegistry::register::<Region, GasVolume>(world);
-    ColumnRegistry::register::<Region, ReferenceVolume>(world);
-    ColumnRegistry::register::<Region, GasPressure>(world);
-    ColumnRegistry::register::<Region, ReferencePressure>(world);
-    StateRegistry::register::<SurfaceMesh>(world, "surface_mesh");
-    StateRegistry::register::<OpenRegions>(world, "open_regions");
-    StateRegistry::register::<TrackerState>(world, "tracker");
-    StateRegistry::register::<NextVertexId>(world, "next_vertex_id");
-    StateRegistry::register::<BubbleGas>(world, "bubble_gas");
-    StateRegistry::register::<BurstsDone>(world, "bursts_done");
-    StateRegistry::register::<WireLag>(world, "wire_lag");
-    StateRegistry::register::<LiquidLost>(world, "liquid_lost");
-    world.init_resource::<SurfaceMesh>();
-    world.init_resource::<OpenRegions>();
-    world.init_resource::<TrackerState>();
-    world.init_resource::<NextVertexId>();
-    world.init_resource::<BubbleGas>();
-    world.init_resource::<BurstsDone>();
-    world.init_resource::<WireLag>();
-    world.init_resource::<LiquidLost>();
+    let authored = settings(world);
+    let scale = on_mesh::register(world, &authored.remesh);
+    let air = *world.resource::<Atmosphere>();
+    world.insert_resource(FlowRules::new(&authored, air, scale.size));
     world.init_resource::<FlowWork>();
     world.init_resource::<FlowStep>();
-    world.init_resource::<Pins>();
-    world.init_resource::<StepCounts>();
-    world.init_resource::<StepEvents>();
-    world.init_resource::<GasChanges>();
-    world.insert_resource(TopologyChanged(true));
-    insert_rules(world);
-}
-
-/// What the scene alone decides: thresholds, knobs, and how wires and rims move.
-fn insert_rules(world: &mut World) {
-    let authored = settings(world);
-    let films = authored_films(world);
-    let area: f64 = films.iter().map(|film| film.shape.area()).sum();
-    let edge = world.resource::<SceneHeader>().resolution.edge(area);
-    let size = films.iter().map(|film| film.shape.size()).fold(0.0, f64::max);
-    let air = *world.resource::<Atmosphere>();
-    world.insert_resource(FlowRules::new(&authored, air, size));
-    let keep = authored.remesh;
-    let policy = Policy {
-        shortest: keep.shortest.si(),
-        longest: keep.longest.si(),
-        snap: keep.snap.si(),
-        contact: match keep.contact {
-            Contact::Merge => froth_surface::Contact::Merge,
-            Contact::Bounce => froth_surface::Contact::Bounce,
-        },
-        flips: keep.flips,
-        separation: keep.topology,
-        ..Policy::new(edge)
-    };
-    let smoothing = if keep.smoothing { SMOOTHING } else { 0.0 };
-    world.insert_resource(MeshRules { policy, remesh: keep.enabled, smoothing });
-    let wires = authored_wires(world);
-    let moves = films.into_iter().map(|film| film.moves).chain(wires.into_iter().map(|wire| wire.moves));
-    world.insert_resource(Holders(moves.collect()));
 }
 
 /// The scene's settings; the defaults where it is written for another method.
@@ -187,100 +90,11 @@ fn settings(world: &World) -> GeometricFlowSettings {
 /// Turns the authored films into one mesh.
 ///
 /// # Errors
-/// A [`FilmFault`]: a mesh from a file that is at fault, films that cross, wires that hold nothing.
+/// A [`FilmFault`](froth_systems::tracker::discretise::FilmFault): a mesh from a file that is at fault, films that cross, wires that
+/// hold nothing.
 pub fn discretise(world: &mut World) -> Result<(), DiscretiseError> {
-    let (films, wires) = (authored_films(world), authored_wires(world));
-    let edge = world.resource::<MeshRules>().policy.edge;
-    let discrete = DiscreteFilms::sample(&films, &wires, edge).map_err(|fault| in_scene(&fault))?;
-    let areas = vertex_areas(&discrete.surface);
-    let count = discrete.surface.positions.len();
-    spawn_rows::<MeshVertex>(world, count);
-    fill_column::<MeshVertex, _>(world, &(0..count as u64).map(StableId).collect::<Vec<_>>());
-    world.insert_resource(NextVertexId(count as u64));
-    let liquid: Vec<LiquidVolume> =
-        areas.iter().zip(&discrete.thickness).map(|(area, eta)| LiquidVolume(area * eta)).collect();
-    fill_column::<MeshVertex, _>(world, &liquid);
-    fill_column::<MeshVertex, _>(world, &discrete.velocities.iter().map(|u| Velocity(*u)).collect::<Vec<_>>());
-    fill_column::<MeshVertex, _>(world, &discrete.pins.iter().map(|pin| Pinned(*pin)).collect::<Vec<_>>());
-    fill_column::<MeshVertex, _>(world, &discrete.surface.positions.iter().map(|x| Position(*x)).collect::<Vec<_>>());
-    let ramps = discrete.ramps.into_iter().collect();
-    world.insert_resource(BubbleGas { ramps, ..BubbleGas::of(&discrete.surface) });
-    world.insert_resource(OpenRegions(discrete.surface.open));
-    world.insert_resource(discrete.surface.mesh);
+    on_mesh::discretise(world)?;
     measure::measure_films(world);
     gas::write_regions(world);
     Ok(())
-}
-
-/// A fault of the films as one that the scene can point at.
-fn in_scene(fault: &FilmFault) -> crate::scene::MeshFault {
-    use froth_surface::fault::MeshFault as Mesh;
-    let kind = match fault {
-        FilmFault::File { .. } => MeshFaultKind::NotAMesh,
-        FilmFault::Mesh { fault: Mesh::SelfIntersection { .. }, .. } | FilmFault::Crossing { .. } => {
-            MeshFaultKind::Crossing
-        }
-        FilmFault::Mesh { fault: Mesh::PiercedFilm { .. }, .. } | FilmFault::WirePierces { .. } => {
-            MeshFaultKind::WirePierces
-        }
-        FilmFault::Mesh {
-            fault:
-                Mesh::OpenEdge { .. } | Mesh::InconsistentLabels { .. } | Mesh::NoVolume { .. } | Mesh::SameLabels { .. },
-            ..
-        } => MeshFaultKind::Labels,
-        FilmFault::VolumeCount { .. } => MeshFaultKind::Volumes,
-        FilmFault::NoFilmOnWire { .. } => MeshFaultKind::WireFar,
-        _ => MeshFaultKind::Faces,
-    };
-    crate::scene::MeshFault { entity: PlaceInScene(fault.place()), kind, message: fault.to_string() }
-}
-
-/// A third of the film area around every vertex, m^2.
-fn vertex_areas(surface: &Surface) -> Vec<f64> {
-    let mut areas = PerVertex(vec![0.0; surface.positions.len()]);
-    for (row, face) in surface.mesh.faces().filter(|(_, face)| !face.is_ghost()) {
-        face.vertices().into_iter().for_each(|v| areas[v] += surface.area(row) / 3.0);
-    }
-    areas.0
-}
-
-/// The authored films in the order of the scene file.
-fn authored_films(world: &mut World) -> Vec<AuthoredFilm> {
-    let seed = world.get_resource::<Seed>().copied().unwrap_or_default().0;
-    let mut films = Vec::new();
-    for entity in world.iter_entities() {
-        let part = |place: &PlaceInScene, film: &Film, shape: FilmShape| {
-            let own_seed = random::bits(seed, u64::from(place.0), 0, Use::NoiseSeed) as u32;
-            let bumps = entity.get::<Bumps>().map(|b| (*b, b.seed.map_or(own_seed.wrapping_add(1), |s| s as u32)));
-            AuthoredFilm {
-                place: place.0,
-                name: entity.get::<Name>().map(|name| name.0.clone()),
-                shape,
-                film: *film,
-                perturbation: Perturbation { bumps, mode: entity.get::<HarmonicMode>().copied() },
-                seed: own_seed,
-                moves: entity.get::<Moves>().cloned(),
-                drift: entity.get::<Drift>().map_or(DVec3::ZERO, |drift| drift.0.si()),
-                volumes: entity.get::<Volumes>().cloned(),
-            }
-        };
-        if let (Some(place), Some(film)) = (entity.get::<PlaceInScene>(), entity.get::<Film>()) {
-            films.extend(FilmShape::of(&entity).map(|shape| part(place, film, shape)));
-        }
-    }
-    films.sort_by_key(|film| film.place);
-    films
-}
-
-/// The authored wires in the order of the scene file.
-fn authored_wires(world: &mut World) -> Vec<AuthoredWire> {
-    let mut query = world.query::<(&PlaceInScene, &Wire, Option<&Moves>)>();
-    let wire = |(place, wire, moves): (&PlaceInScene, &Wire, Option<&Moves>)| AuthoredWire {
-        place: place.0,
-        wire: wire.clone(),
-        moves: moves.cloned(),
-    };
-    let mut wires: Vec<AuthoredWire> = query.iter(world).map(wire).collect();
-    wires.sort_by_key(|wire| wire.place);
-    wires
 }

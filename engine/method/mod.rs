@@ -11,6 +11,8 @@
 
 pub mod geometric_flow;
 pub mod melp;
+mod on_mesh;
+pub mod vortex_sheet;
 
 use std::error::Error;
 
@@ -37,7 +39,7 @@ pub struct Method {
 }
 
 /// Every method that can run, in the order of listings.
-pub const METHODS: &[Method] = &[melp::METHOD, geometric_flow::METHOD];
+pub const METHODS: &[Method] = &[melp::METHOD, geometric_flow::METHOD, vortex_sheet::METHOD];
 
 /// The method that scene files and the command line call `name`, if it can run.
 #[must_use]

@@ -7,12 +7,10 @@
 //! | `Geometry` | areas, normals, curvature, thickness | `measure` |
 //! | `Dynamics` | where tension, pressure and external forces take the films | `motion` |
 //! | `Deform` | films go there, as far as none touches another | `motion` |
-//! | `Topology` | gas follows bubbles that divide, burst or vanish | `gas` |
-//! | `Observe` | areas, volumes, pressures, energies | `observe` |
+//! | `Observe` | areas, energies, how the step went | `observe` |
 //!
 //! The mathematics is [`froth_surface::flow`] and [`froth_surface::calculus`].
 
-pub mod gas;
 pub mod measure;
 pub mod motion;
 pub mod observe;

@@ -10,31 +10,28 @@ use froth_components::clock::Clock;
 use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
-use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Pinned, Position, Velocity};
+use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Position, Velocity};
 use froth_surface::calculus::Weights;
 use froth_surface::flow::{Acceleration, Flow, FlowError, FlowState, Forcing, Mass};
 use froth_surface::motion::{MotionSettings, advance};
 use froth_surface::{PerVertex, Surface};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::gas::BubbleGas;
 use super::measure::{FlowWork, mass_of};
 use super::settings::FlowRules;
+use crate::bubbles::gas::BubbleGas;
 use crate::observe::{Fault, Faults};
 use crate::rows::{fill_column, read_column};
 use crate::stage::Stage;
 use crate::tracker::films::{self, MeshRules, TopologyChanged};
 use crate::tracker::remeshing::Slides;
-use crate::tracker::wires::Holders;
+use crate::tracker::wires::{Holders, MOST_STOPS, Pins, WireLag, WireStuck};
 
 /// Part of an edge length that a vertex may move in one piece of a step.
 const LONGEST_WAY: f64 = 0.5;
 /// Pieces that a step may take: beyond, the films are running away.
 const MOST_PIECES: u32 = 64;
-/// Steps in a row for which a wire may be held up by a film.
-const MOST_STOPS: u32 = 20;
 /// Part of a step that is nothing but rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -49,9 +46,9 @@ pub struct FlowStep {
     pub limited: usize,
     /// Least fraction of its way that one went, dimensionless.
     pub least_fraction: f64,
-    /// Iterations of the linear solver.
+    /// Iterations of the linear solver: all that the step took, also for proposals that went too far and were cut into pieces.
     pub solve_iterations: u32,
-    /// Substeps of the explicit scheme.
+    /// Substeps of the explicit scheme, counted in the same way.
     pub substeps: u32,
     masses: Vec<f64>,
     pushes: Vec<DVec3>,
@@ -73,14 +70,9 @@ enum MotionFault {
         /// Pieces that the step was cut into.
         pieces: u32,
     },
-    /// A wire meets a film and cannot go on without going through it.
-    #[error(
-        "a wire meets a film or another wire and cannot go on without going through it; it is {left:.3e} s behind: lead it another way, or join films sooner (`snap`)"
-    )]
-    WireMeetsFilm {
-        /// Time that it is behind, s.
-        left: f64,
-    },
+    /// A wire cannot go on.
+    #[error(transparent)]
+    Wire(#[from] WireStuck),
 }
 
 /// A part of the step, s since its start.
@@ -116,23 +108,6 @@ pub fn propose_motion(world: &mut World) {
     world.insert_resource(step);
 }
 
-/// How far the films and the wires that hold them are behind the clock, s: a wire that meets a film waits until the tracker has joined
-/// the two. State of a run.
-#[derive(Resource, Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct WireLag {
-    /// Time that the wires are behind, s.
-    pub behind: f64,
-    /// Steps in a row in which they were.
-    pub steps: u32,
-}
-
-impl WireLag {
-    /// How fast wires go in a step of `whole` seconds, in their own speeds: at most twice, to catch up with the clock.
-    fn pace(&self, whole: f64) -> f64 {
-        if whole > 0.0 { 1.0 + (self.behind / whole).min(1.0) } else { 1.0 }
-    }
-}
-
 /// Moves the films to where they are proposed to be, as far as none touches another, piece by piece.
 ///
 /// Where a wire would carry a film through another, all motion stops short of that; the wire catches up once the tracker has joined what
@@ -152,16 +127,15 @@ pub fn move_films(world: &mut World) {
             step.least_fraction = step.least_fraction.min(report.least_fraction).min(report.pinned_fraction);
             flow.finish(&as_if_whole(&from, &wanted, surface, report.pinned_fraction), piece.length, state);
             if report.pinned_fraction < 1.0 {
-                lag.steps += 1;
-                lag.behind += whole - (piece.from + report.pinned_fraction * piece.length) * lag.pace(whole);
-                let stuck = lag.steps > MOST_STOPS;
+                let done = piece.from + report.pinned_fraction * piece.length;
+                let stopped = lag.stopped(whole, done, MOST_STOPS);
                 *world.resource_mut::<WireLag>() = lag;
-                return if stuck { Err(MotionFault::WireMeetsFilm { left: lag.behind }) } else { Ok(()) };
+                return Ok(stopped?);
             }
             let left = whole - piece.from - piece.length;
             if left <= ROUNDING * whole {
-                let behind = lag.behind - (lag.pace(whole) - 1.0) * whole;
-                *world.resource_mut::<WireLag>() = WireLag { behind: behind.max(0.0), steps: 0 };
+                lag.went_on(whole);
+                *world.resource_mut::<WireLag>() = lag;
                 return Ok(());
             }
             piece = Piece { from: piece.from + piece.length, length: step.length.min(left) };
@@ -286,22 +260,11 @@ fn targets(world: &World, surface: &Surface, piece: Piece) -> Option<Vec<DVec3>>
     if !holders.move_at_all() {
         return None;
     }
-    let (clock, lag) = (world.resource::<Clock>(), world.resource::<WireLag>());
-    let (start, pace) = (clock.time - lag.behind, lag.pace(clock.step_length));
-    let (from, to) = (start + pace * piece.from, start + pace * (piece.from + piece.length));
+    let clock = world.resource::<Clock>();
+    let (from, to) = world.resource::<WireLag>().window(clock.time, clock.step_length, piece.from, piece.length);
     let pins = world.resource::<Pins>();
     let positions: Vec<Position> = surface.positions.iter().map(|x| Position(*x)).collect();
     Some(holders.targets(&positions, &pins.0, from, to))
-}
-
-/// Which wire holds each vertex in this step: the column, for functions that see the world as it is.
-#[derive(Resource, Clone, Debug, Default)]
-pub struct Pins(pub Vec<Pinned>);
-
-/// Copies the column of pins.
-pub fn note_pins(world: &mut World) {
-    let pins = Pins(read_column::<MeshVertex, Pinned>(world));
-    world.insert_resource(pins);
 }
 
 fn longest_way(surface: &Surface, flow: &Flow) -> f64 {

@@ -3,9 +3,7 @@
 use bevy_ecs::query::With;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::film::{Area, LiquidVolume};
-use froth_components::gas::{GasPressure, GasVolume, ReferencePressure, ReferenceVolume};
-use froth_components::identity::InRegion;
-use froth_components::kind::{MeshVertex, Region};
+use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::Velocity;
 
@@ -15,9 +13,6 @@ use super::settings::FlowRules;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
-
-/// Largest number of a bubble whose volume and pressure get columns of their own; all are rows of the kind `Region`.
-const LISTED: usize = 40;
 
 /// Records area, energies, speeds, and how the step went.
 pub fn observe_films(
@@ -50,19 +45,4 @@ pub fn observe_films(
     observables.record("pieces", "1", f64::from(step.pieces));
     observables.record("substeps", "1", f64::from(step.substeps));
     observables.record("solve_iterations", "1", f64::from(step.solve_iterations));
-}
-
-/// Records the bubbles: how many, how well they keep their volumes, and of the first forty volume and pressure.
-pub fn observe_bubbles(
-    bubbles: Query<(&InRegion, &GasVolume, &ReferenceVolume, &GasPressure, &ReferencePressure), With<Region>>,
-    mut observables: ResMut<Observables>,
-) {
-    observables.record("bubbles", "1", bubbles.iter().len() as f64);
-    let error = bubbles.iter().map(|(_, volume, target, ..)| (volume.0 / target.0 - 1.0).abs()).fold(0.0, f64::max);
-    observables.record("volume_error", "1", error);
-    for (region, volume, _, pressure, outside) in bubbles.iter().filter(|(region, ..)| region.0.0 as usize <= LISTED) {
-        let name = |what: &str| format!("{what}_{}", region.0.0);
-        observables.record(&name("volume"), "m^3", volume.0);
-        observables.record(&name("excess_pressure"), "Pa", pressure.0 - outside.0);
-    }
 }

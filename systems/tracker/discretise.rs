@@ -16,7 +16,8 @@ use thiserror::Error;
 
 use super::wire_edges::vertices_along;
 use super::wire_piercing::pierces;
-use crate::geometric_flow::gas::Ramp;
+use super::wires::Holders;
+use crate::bubbles::gas::Ramp;
 use crate::sampling;
 use crate::sampling::field::Extent;
 use crate::sampling::surface::{Displacement, Perturbation};
@@ -32,6 +33,8 @@ pub struct AuthoredFilm {
     pub shape: FilmShape,
     /// Its thickness.
     pub film: Film,
+    /// Factors by which the shape is stretched about its centre along x, y and z.
+    pub stretch: DVec3,
     /// How the shape is displaced.
     pub perturbation: Perturbation,
     /// Seed of noise that the scene does not seed itself.
@@ -139,10 +142,8 @@ pub struct DiscreteFilms {
     pub ramps: Vec<(Region, Ramp)>,
     /// Velocity at the start, m/s.
     pub velocities: Vec<DVec3>,
-    /// What holds the vertex: 0 nothing, else a place in `holders` plus one.
+    /// What holds the vertex, as [`Holders`] numbers it; 0 for nothing.
     pub pins: Vec<u64>,
-    /// What holds vertices: rims of films, in the order of the scene, then wires.
-    pub holders: Vec<Option<Moves>>,
 }
 
 impl DiscreteFilms {
@@ -157,22 +158,25 @@ impl DiscreteFilms {
         let mut owners: Vec<usize> = Vec::new();
         for (number, film) in films.iter().enumerate() {
             let mut triangles = triangles(film, edge)?;
+            let centre = film.shape.centre();
+            triangles.positions.iter_mut().for_each(|x| *x = centre + film.stretch * (*x - centre));
             perturb(&mut triangles, film);
             let fault = |fault| FilmFault::Mesh { place: film.place, fault };
             validate_with(&triangles, |surface| find_crossings(surface, false)).map_err(fault)?;
             discrete.thickness.extend(thickness(&triangles, film));
             let count = triangles.positions.len();
             discrete.velocities.extend(std::iter::repeat_n(film.drift, count));
-            discrete.pins.extend(triangles.pinned.iter().map(|held| if *held { number as u64 + 1 } else { 0 }));
-            discrete.holders.push(film.moves.clone());
+            discrete
+                .pins
+                .extend(triangles.pinned.iter().map(|held| if *held { Holders::pin_of_rim(number) } else { 0 }));
             owners.extend(std::iter::repeat_n(number, count));
             discrete.ramps.extend(ramps(film, &triangles, all.region_count() - 1)?);
             all.append(&triangles);
         }
         discrete.surface = Surface::from_triangles(&all);
         discrete.check_apart(films, &owners)?;
-        for wire in wires {
-            discrete.hold(wire, films, &owners, edge)?;
+        for (number, wire) in wires.iter().enumerate() {
+            discrete.hold(wire, Holders::pin_of_wire(films.len(), number), films, &owners, edge)?;
         }
         Ok(discrete)
     }
@@ -190,12 +194,11 @@ impl DiscreteFilms {
     fn hold(
         &mut self,
         wire: &AuthoredWire,
+        pin: u64,
         films: &[AuthoredFilm],
         owners: &[usize],
         edge: f64,
     ) -> Result<(), FilmFault> {
-        self.holders.push(wire.moves.clone());
-        let pin = self.holders.len() as u64;
         let named = |v: VertexRow| {
             let name = films[owners[v.index()]].name.as_deref();
             wire.wire.holds.as_deref().is_none_or(|wanted| name == Some(wanted))
@@ -206,7 +209,7 @@ impl DiscreteFilms {
             wire.wire.path.nearest(x).distance(x)
         };
         // What a film pinned itself; what a wire before took stays with that.
-        let is_own = |v: VertexRow| (1..=films.len() as u64).contains(&self.pins[v.index()]);
+        let is_own = |v: VertexRow| Holders::is_rim(self.pins[v.index()], films.len());
         let rims: Vec<VertexRow> =
             vertices.iter().copied().filter(|v| is_own(*v) && distance(v) < 1e-3 * edge).collect();
         let rimmed: Vec<usize> = rims.iter().map(|v| owners[v.index()]).collect();

@@ -7,7 +7,7 @@ use froth_components::film::LiquidVolume;
 use froth_surface::bodies::Division;
 use froth_surface::operations::Counts;
 use froth_surface::smoothing::tangential_displacements;
-use froth_surface::transfer::Transfer;
+use froth_surface::transfer::{Several, Transfer};
 use froth_surface::{PerVertex, Region, Surface, Tracker};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::columns::VertexColumns;
 use super::events;
 use super::films::{self, MeshRules, TopologyChanged, TrackerState};
+use super::followers::Followers;
 
 /// Part of an edge length that a vertex may slide along its film per step.
 const LONGEST_SLIDE: f64 = 0.1;
@@ -70,6 +71,10 @@ pub fn slide_mesh(world: &mut World) {
     let mut columns = VertexColumns::take(world, surface.positions.len());
     columns.slide(&surface, &slides);
     columns.put_back(world, &surface, &mut 0);
+    for mut follower in Followers::take(world) {
+        follower.slide(&surface, &slides);
+        follower.put_back(world);
+    }
     films::put_back(world, surface);
     world.insert_resource(Slides(slides));
 }
@@ -83,14 +88,15 @@ pub(super) struct Changes {
 }
 
 /// Lets the tracker change the films of a world; everything that depends on rows follows.
-pub(super) fn change(
-    world: &mut World,
-    operate: impl FnOnce(&mut Tracker, &mut Surface, &mut VertexColumns) -> Changes,
-) {
+pub(super) fn change(world: &mut World, operate: impl FnOnce(&mut Tracker, &mut Surface, &mut Several<'_>) -> Changes) {
     let mut surface = films::take(world);
     let mut columns = VertexColumns::take(world, surface.positions.len());
     let mut tracker = std::mem::take(&mut world.resource_mut::<TrackerState>().0);
-    let changes = operate(&mut tracker, &mut surface, &mut columns);
+    let mut followers = Followers::take(world);
+    let mut data = Several(vec![&mut columns]);
+    data.0.extend(followers.iter_mut().map(|follower| follower.as_mut() as &mut dyn Transfer));
+    let changes = operate(&mut tracker, &mut surface, &mut data);
+    followers.into_iter().for_each(|follower| follower.put_back(world));
     world.resource_mut::<TrackerState>().0 = tracker;
     if changes.counts != (Counts { blocked: changes.counts.blocked, ..Counts::default() }) {
         world.resource_mut::<TopologyChanged>().0 = true;

@@ -43,6 +43,10 @@ impl Measured for Cube {
     fn outline(&self) -> Vec<DVec3> {
         corners(self.centre.si(), DVec3::splat(self.side.si()))
     }
+
+    fn flat_normals(&self) -> Vec<DVec3> {
+        DVec3::AXES.to_vec()
+    }
 }
 
 /// Radii of two bubbles, metres. Written `("3 cm", "2 cm")`.

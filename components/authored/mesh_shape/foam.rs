@@ -83,8 +83,20 @@ impl Measured for KelvinCells {
         (squares * square + hexagons * hexagon) * self.size.si().powi(2)
     }
 
+    /// Those of the eight cells at the corners of the block, whose own are all permutations of (0, ±1/4, ±1/2).
     fn outline(&self) -> Vec<DVec3> {
-        corners(self.centre.si(), DVec3::splat(self.size.si() * f64::from(self.count)))
+        let size = self.size.si();
+        let flat = |corner: DVec3| [DVec3::new(0.0, 0.5, 1.0), DVec3::new(0.0, 1.0, 0.5)].map(|part| corner * part);
+        let turned = |x: DVec3| [x, DVec3::new(x.y, x.z, x.x), DVec3::new(x.z, x.x, x.y)];
+        let own: Vec<DVec3> =
+            corners(DVec3::ZERO, DVec3::splat(size)).into_iter().flat_map(flat).flat_map(turned).collect();
+        let cells = corners(self.centre.si(), DVec3::splat(size * f64::from(self.count - 1)));
+        cells.into_iter().flat_map(|cell| own.iter().map(move |corner| cell + *corner)).collect()
+    }
+
+    /// Of the squares alone.
+    fn flat_normals(&self) -> Vec<DVec3> {
+        DVec3::AXES.to_vec()
     }
 
     fn bubbles(&self) -> u64 {
@@ -127,6 +139,10 @@ impl Measured for Lattice {
 
     fn outline(&self) -> Vec<DVec3> {
         corners(self.centre.si(), self.cell.si() * self.counts.vector())
+    }
+
+    fn flat_normals(&self) -> Vec<DVec3> {
+        DVec3::AXES.to_vec()
     }
 
     fn bubbles(&self) -> u64 {
@@ -263,6 +279,19 @@ mod tests {
         // A cell of volume V has the area 5.315 V^(2/3) (Weaire and Phelan 1994, for flat faces), in a large block half of it.
         let per_cell = block(1000).area() / block(1000).bubbles() as f64;
         assert!((per_cell / (0.5 * 5.315 * 0.5_f64.powf(2.0 / 3.0)) - 1.0).abs() < 0.003, "{per_cell}");
+    }
+
+    #[test]
+    fn the_corners_of_kelvins_cells_are_where_four_of_them_meet() {
+        let block = KelvinCells { centre: Place::ZERO, size: Length::from_si(1.0), count: 1 };
+        let mut corners = block.outline();
+        corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        corners.dedup();
+        assert_eq!(corners.len(), 24);
+        // As far from the centre as from the two cells beyond a hexagon and the one beyond a square.
+        let cells = [DVec3::X, DVec3::new(0.5, 0.5, 0.5), DVec3::new(0.5, 0.5, -0.5)];
+        let corner = *corners.iter().find(|x| x.x == 0.5 && x.y == 0.25).unwrap();
+        assert!(cells.iter().all(|cell| (cell.distance(corner) - corner.length()).abs() < 1e-15));
     }
 
     #[test]

@@ -38,6 +38,11 @@ pub trait Measured {
     /// Points whose convex hull is the shape's hull, metres.
     fn outline(&self) -> Vec<DVec3>;
 
+    /// Directions across films that are flat at the start; none where all are curved or lie at random.
+    fn flat_normals(&self) -> Vec<DVec3> {
+        Vec::new()
+    }
+
     /// Number of bubbles; of films between wires, 1.
     fn bubbles(&self) -> u64 {
         1

@@ -1,14 +1,17 @@
-//! Which method runs a scene, and its settings: one file per method, [`melp`] and [`geometric_flow`].
+//! Which method runs a scene, and its settings: one file per method, [`melp`], [`geometric_flow`] and [`vortex_sheet`];
+//! [`remesh`] is what those on a mesh share.
 
 pub mod geometric_flow;
 pub mod melp;
+pub mod remesh;
+pub mod vortex_sheet;
 
 use serde::Deserialize;
 
-pub use geometric_flow::{
-    Contact, FilmMotion, GeometricFlowSettings, Inertial, Mass, Overdamped, Remesh, TensionScheme, VolumeRule,
-};
+pub use geometric_flow::{FilmMotion, GeometricFlowSettings, Inertial, Mass, Overdamped, TensionScheme, VolumeRule};
 pub use melp::{Gas, MelpSettings, Transfer};
+pub use remesh::{Contact, Remesh};
+pub use vortex_sheet::{Discretisation, Integrator, Kernel, PairSummation, VortexSheetSettings};
 
 use crate::quantity::{MassPerArea, range};
 
@@ -20,6 +23,8 @@ pub enum MethodChoice {
     Melp(MelpSettings),
     /// Film mesh under its own tension, with volume constraints.
     GeometricFlow(GeometricFlowSettings),
+    /// Film mesh that carries circulation, moved by the air (Da et al. 2015).
+    VortexSheet(VortexSheetSettings),
 }
 
 impl MethodChoice {
@@ -29,6 +34,7 @@ impl MethodChoice {
         match self {
             Self::Melp(_) => MethodName::Melp,
             Self::GeometricFlow(_) => MethodName::GeometricFlow,
+            Self::VortexSheet(_) => MethodName::VortexSheet,
         }
     }
 
@@ -38,7 +44,8 @@ impl MethodChoice {
         match name {
             MethodName::Melp => Some(Self::Melp(MelpSettings::default())),
             MethodName::GeometricFlow => Some(Self::GeometricFlow(GeometricFlowSettings::default())),
-            MethodName::VortexSheet | MethodName::VortexParticle => None,
+            MethodName::VortexSheet => Some(Self::VortexSheet(VortexSheetSettings::default())),
+            MethodName::VortexParticle => None,
         }
     }
 }

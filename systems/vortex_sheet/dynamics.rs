@@ -1,0 +1,61 @@
+//! What changes the potentials: tension and external forces, gas that is let in, wires.
+
+use bevy_ecs::world::World;
+use froth_components::kind::MeshVertex;
+use froth_components::motion::{Pinned, Position};
+use glam::DVec3;
+
+use super::settings::SheetRules;
+use super::work::{SheetWork, external_forces, forcing, with_work};
+use crate::bubbles::gas::BubbleGas;
+use crate::rows::read_column;
+use crate::stage::Stage;
+use crate::tracker::wires::{Holders, WireLag};
+
+/// Gives the bubbles the volumes that they shall have at the end of the substep.
+pub fn fill_bubbles(world: &mut World) {
+    with_work(world, Stage::Dynamics, |world, work, substep| {
+        if !work.is_under_way {
+            world.resource_mut::<BubbleGas>().fill(substep.time, substep.time + substep.length);
+        }
+        Ok(())
+    });
+}
+
+/// Works out the pressures that hold the films against tension and external forces; integrators that kick change the potentials by them.
+pub fn press_by_tension(world: &mut World) {
+    let forces = external_forces(world);
+    with_work(world, Stage::Dynamics, |world, work, substep| {
+        work.forces = forces;
+        let rules = *world.resource::<SheetRules>();
+        let SheetWork { sheet, state, heads, forces, integration, is_under_way, .. } = work;
+        sheet.load(&state.positions, &forcing(world, forces));
+        if let Some([before, _]) = rules.integrator.kicks() {
+            sheet.kick(before * substep.length, rules.density, heads, &mut state.potentials);
+        }
+        if !*is_under_way {
+            integration.begin(state);
+            *is_under_way = true;
+        }
+        Ok(())
+    });
+}
+
+/// Chooses the circulation on wires so that films go with them.
+pub fn carry_by_wires(world: &mut World) {
+    let velocities = |world: &mut World, time: f64, length: f64| {
+        let lag = *world.resource::<WireLag>();
+        let (from, to) = lag.window(time, length, 0.0, length);
+        let pins = read_column::<MeshVertex, Pinned>(world);
+        let positions = read_column::<MeshVertex, Position>(world);
+        let targets = world.resource::<Holders>().targets(&positions, &pins, from, to);
+        targets.iter().zip(&positions).map(|(to, x)| (*to - x.0) / length).collect::<Vec<DVec3>>()
+    };
+    with_work(world, Stage::Dynamics, |world, work, substep| {
+        work.wire_velocities = velocities(world, substep.time, substep.length);
+        let SheetWork { sheet, state, wire_velocities, report, .. } = work;
+        sheet.hold(&state.positions, wire_velocities, &mut state.potentials)?;
+        report.wire_iterations = report.wire_iterations.max(sheet.measured.wires.iterations);
+        Ok(())
+    });
+}

@@ -96,6 +96,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         text: include_str!("../scenes/octahedral_frame.ron"),
     },
     BuiltInScene {
+        name: "kelvin",
+        summary: "35 of Kelvin's cells: flat walls bend, then the skin of the block squeezes them",
+        text: include_str!("../scenes/kelvin.ron"),
+    },
+    BuiltInScene {
         name: "foam_lattice",
         summary: "a block of 125 cubes becomes a foam",
         text: include_str!("../scenes/foam_lattice.ron"),
@@ -120,6 +125,61 @@ pub const GALLERY: &[BuiltInScene] = &[
         name: "marangoni_wave",
         summary: "law: liquid and surfactant slosh to and fro in a flat film",
         text: include_str!("../scenes/marangoni_wave.ron"),
+    },
+    BuiltInScene {
+        name: "cube_oscillation",
+        summary: "a cube of film lets go and rings in air",
+        text: include_str!("../scenes/cube_oscillation.ron"),
+    },
+    BuiltInScene {
+        name: "cube_damped",
+        summary: "a cube of film lets go and settles to a sphere",
+        text: include_str!("../scenes/cube_damped.ron"),
+    },
+    BuiltInScene {
+        name: "double_bubble_oscillation",
+        summary: "a stretched double bubble wobbles",
+        text: include_str!("../scenes/double_bubble_oscillation.ron"),
+    },
+    BuiltInScene {
+        name: "triple_bubble_oscillation",
+        summary: "a squeezed triple bubble wobbles",
+        text: include_str!("../scenes/triple_bubble_oscillation.ron"),
+    },
+    BuiltInScene {
+        name: "octahedron",
+        summary: "films on an octahedron of wire settle",
+        text: include_str!("../scenes/octahedron.ron"),
+    },
+    BuiltInScene {
+        name: "bubble_in_a_ring",
+        summary: "a bubble squeezed through a ring slips to one side",
+        text: include_str!("../scenes/bubble_in_a_ring.ron"),
+    },
+    BuiltInScene {
+        name: "catenoid_pinching",
+        summary: "two rings draw a film apart until it pinches",
+        text: include_str!("../scenes/catenoid_pinching.ron"),
+    },
+    BuiltInScene {
+        name: "pulling_double_bubble",
+        summary: "two rings pull a double bubble apart, against the air",
+        text: include_str!("../scenes/pulling_double_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "bubble_cluster",
+        summary: "ten bubbles, packed at random, swing towards rest",
+        text: include_str!("../scenes/bubble_cluster.ron"),
+    },
+    BuiltInScene {
+        name: "bubble_popping",
+        summary: "a cluster of ten bubbles pops one by one",
+        text: include_str!("../scenes/bubble_popping.ron"),
+    },
+    BuiltInScene {
+        name: "sweeping_ring",
+        summary: "a ring that sweeps through the air blows bubbles",
+        text: include_str!("../scenes/sweeping_ring.ron"),
     },
 ];
 

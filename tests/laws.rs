@@ -45,4 +45,11 @@ laws! {
     bubbles_keep_their_volumes_while_others_burst = "bursting_foam";
     films_in_frames_come_to_the_least_area = "frames";
     unequal_clusters_have_the_least_area_and_its_pressures = "clusters";
+    a_bubble_in_air_rings_at_the_frequencies_of_two_fluids = "air_modes";
+    a_film_on_a_ring_swings_in_air_like_a_drum = "drum_in_air";
+    a_bubble_in_air_keeps_its_energy = "sheet_energy";
+    a_cube_rings_on_in_air_and_settles_where_it_is_damped = "sheet_cube";
+    clusters_in_air_come_to_rest_with_plateaus_angles = "sheet_clusters";
+    a_cluster_in_air_keeps_its_impulse = "sheet_impulse";
+    the_scenes_of_vortex_sheets_run = "sheet_scenes";
 }

@@ -54,6 +54,11 @@ fn foam(piece: &str, by: &str) -> String {
     FOAM.replace(piece, by)
 }
 
+/// The foam as vortex sheets with a setting.
+fn sheet(setting: &str) -> String {
+    foam("GeometricFlow(cfl: 0.25)", &format!("VortexSheet({setting})"))
+}
+
 /// The scene with one piece replaced.
 fn broken(piece: &str, by: &str) -> String {
     assert_eq!(SCENE.matches(piece).count(), 1, "`{piece}` must be in the scene once");
@@ -103,7 +108,7 @@ faults! {
     an_unknown_field_without_a_name_before_it: broken("duration", "liquid: (densitty: 1000), duration");
     an_unknown_choice: broken("Noise(mean: \"425 nm\", relative: 0.15, frequency: 5)", "Unifrom(\"425 nm\")");
     an_unknown_method: broken("Melp(", "Mlep(");
-    a_method_to_come: broken("Melp(cfl: 0.99)", "VortexSheet()");
+    a_method_to_come: broken("Melp(cfl: 0.99)", "VortexParticle()");
     a_missing_field: broken("radius: \"10 cm\"", "centre: (0, 0, 0)");
     a_missing_field_of_the_header: broken("resolution: Particles(4000),", "");
     a_field_given_twice: broken("amplitude: 0.06", "amplitude: 0.06, amplitude: 0.07");
@@ -182,6 +187,16 @@ faults! {
     a_mesh_file_with_a_slip: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"tests/meshes/tetrahedrn.obj\")");
     a_mesh_file_of_another_kind: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"Cargo.toml\")");
     a_mesh_file_with_a_bad_row: foam("DoubleBubble(radii: (\"2 cm\", \"3 cm\"))", "MeshFile(path: \"tests/meshes/no_mesh.obj\")");
+
+    an_unknown_integrator: sheet("integrator: Verlet");
+    a_smoothing_of_nothing: sheet("smoothing: 0");
+    a_negative_diffusivity: sheet("diffusivity: \"-1 cm^2/s\"");
+    a_sum_without_a_bound: sheet("summation: Fast(0)");
+    a_step_of_no_capillary_time: sheet("courant: 0");
+    a_film_without_tension: sheet("courant: 0.4").replace("duration", "liquid: (surface_tension: 0), duration");
+    a_film_of_negative_tension: sheet("courant: 0.4").replace("duration", "liquid: (surface_tension: -0.03), duration");
+    a_sheet_in_a_vacuum: sheet("courant: 0.4").replace("duration", "atmosphere: (density: 0), duration");
+    a_drift_of_a_sheet: sheet("courant: 0.4").replace("Name(\"pair\")", "Name(\"pair\"), Drift((1, 0, 0))");
 
     a_spacing_of_an_atom: broken("Particles(4000)", "Spacing(\"0.1 nm\")");
 }

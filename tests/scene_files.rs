@@ -70,7 +70,7 @@ Scene(
     entities: [
         [ Name("cube"), Cube(centre: (0, "1 m", 0), side: "2 cm"), Film(thickness: Uniform("500 nm")), Bumps(), Drift((0.1, 0, 0)) ],
         [ DoubleBubble(axis: (0, 1, 0), radii: ("2 cm", "1 cm")), Film(thickness: Uniform("500 nm")), Name("pair"), Volumes(of: ["30 ml", "5 ml"], within: "0.1 s") ],
-        [ TripleBubble(axis: (0, 1, 0), radius: "1 cm"), Film(thickness: Uniform("500 nm")) ],
+        [ TripleBubble(axis: (0, 1, 0), radius: "1 cm"), Stretch((1.25, 1, 0.8)), Film(thickness: Uniform("500 nm")) ],
         [ QuadrupleBubble(radius: "1 cm"), Film(thickness: Uniform("500 nm")) ],
         [ KelvinCells(size: "1 cm", count: 3), Film(thickness: Uniform("500 nm")) ],
         [ Lattice(cell: "1 cm", counts: (5, 5, 5)), Film(thickness: Uniform("500 nm")) ],

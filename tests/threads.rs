@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{FOAM, OPEN_FILMS, SCENE, assert_same_results, draw};
+use common::{FOAM, OPEN_FILMS, SCENE, assert_same_results, draw, results, sheets};
 use froth::Simulation;
 use froth::run::{Run, RunFolder, RunSettings, Silent};
 use rayon::ThreadPoolBuilder;
+use tempfile::TempDir;
 
 #[test]
 fn any_number_of_threads_leaves_the_same_bytes() {
@@ -23,7 +24,16 @@ fn a_foam_that_changes_its_topology_does_not_depend_on_threads_either() {
     assert_independent_of_threads(FOAM, 1.0);
 }
 
-fn assert_independent_of_threads(scene: &str, resolution: f64) {
+#[test]
+fn films_in_air_do_not_depend_on_threads_either_however_pairs_are_summed() {
+    for summation in ["Direct", "Fast(1e-3)"] {
+        let parent = assert_independent_of_threads(&sheets(summation), 1.0);
+        let events = String::from_utf8(results(&parent.path().join("1"))["events.csv"].clone()).unwrap();
+        assert!(events.contains(",t1,") && events.contains(",burst,"), "{events}");
+    }
+}
+
+fn assert_independent_of_threads(scene: &str, resolution: f64) -> TempDir {
     let parent = tempfile::tempdir().unwrap();
     let folder = |threads: usize| parent.path().join(threads.to_string());
     for threads in [1, 2, 3] {
@@ -38,4 +48,5 @@ fn assert_independent_of_threads(scene: &str, resolution: f64) {
     }
     assert_same_results(&folder(2), &folder(1));
     assert_same_results(&folder(3), &folder(1));
+    parent
 }

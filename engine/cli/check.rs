@@ -2,7 +2,9 @@
 
 use clap::Args;
 use froth_components::authored::field::{Gravity, Wind};
-use froth_components::authored::method::{FilmMotion, GeometricFlowSettings, MelpSettings, MethodChoice};
+use froth_components::authored::method::{
+    FilmMotion, GeometricFlowSettings, MelpSettings, MethodChoice, VortexSheetSettings,
+};
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::wire::Moves;
 use froth_components::quantity::Time;
@@ -110,7 +112,8 @@ fn steps(scene: &Scene, estimate: &Estimate) -> String {
             (format!("{known}, each of up to {substeps} substeps"), cfl)
         }
         MethodChoice::Melp(MelpSettings { cfl, .. })
-        | MethodChoice::GeometricFlow(GeometricFlowSettings { cfl, .. }) => (known, cfl),
+        | MethodChoice::GeometricFlow(GeometricFlowSettings { cfl, .. })
+        | MethodChoice::VortexSheet(VortexSheetSettings { cfl, .. }) => (known, cfl),
         _ => return known,
     };
     let speed = likely_speed(scene);

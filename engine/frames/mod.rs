@@ -165,7 +165,7 @@ fn framing(scene: &Scene, aspect: f64) -> Option<Camera> {
     let shapes: Vec<FilmShape> = scene.entities().iter().filter_map(|entity| entity.shape()).collect();
     let outline: Vec<DVec3> = shapes.iter().flat_map(FilmShape::outline).collect();
     let fill = if shapes.iter().any(FilmShape::is_closed) { FILL } else { FILL_OF_RIMS };
-    let normals: Vec<DVec3> = shapes.iter().filter_map(FilmShape::flat_normal).collect();
+    let normals: Vec<DVec3> = shapes.iter().flat_map(FilmShape::flat_normals).collect();
     Camera::filling(&outline, stand(&normals), fill, aspect).ok()
 }
 
@@ -291,6 +291,7 @@ mod tests {
         for normal in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.0, 0.96, -0.28)] {
             assert!(stand(&[normal]).dot(normal).abs() >= FACING, "{normal}");
         }
+        assert!(DVec3::AXES.iter().all(|axis| stand(&DVec3::AXES).dot(*axis).abs() >= FACING), "a cube");
         assert_eq!(stand(&[DVec3::Z]), stand(&[]));
     }
 }

@@ -11,12 +11,15 @@ use std::f32::consts::TAU;
 /// Fractions of the plastic number and its square, the steps of the R₂ sequence.
 const STEPS: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
 
+/// Least cosine between a film and the view: beyond, it hides no more.
+const SHALLOWEST: f32 = 0.02;
+
 /// Films in one colour each.
 #[derive(Clone, Debug)]
 pub(super) struct RegionsLook {
     /// Linear sRGB per film.
     pub colours: Vec<Vec3>,
-    /// Share of the light behind a film that it hides, 0 to 1.
+    /// Share of the light behind a film seen face-on that it hides, 0 to 1.
     pub opacity: f32,
     /// Darkening of surfaces seen at an angle, 0 to 1.
     pub relief: f32,
@@ -33,6 +36,14 @@ impl RegionsLook {
             }
         }
         colours
+    }
+
+    /// Share of the light behind a film that it hides at this cosine to the view.
+    ///
+    /// Equation: `1 - (1 - opacity)^(1/cos)`, as light has `1/cos` as far to go in a tinted film (Beer). So round films have
+    /// outlines, and what is inside is seen through their middles.
+    pub(super) fn hides(&self, cos: f32) -> f32 {
+        1.0 - (1.0 - self.opacity).powf(1.0 / cos.clamp(SHALLOWEST, 1.0))
     }
 
     /// Linear sRGB of a film at this cosine to the view.

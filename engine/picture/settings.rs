@@ -83,8 +83,8 @@ pub enum Look {
     },
     /// Each film of triangles in one colour, by the two regions that it divides. Films of points all have one colour.
     Regions {
-        /// Share of what is behind a film that it hides, 0 to 1.
-        #[serde(default = "half")]
+        /// Share of what is behind a film that it hides where it is seen face-on, 0 to 1; more where it is seen at an angle.
+        #[serde(default = "light_tint")]
         opacity: f64,
         /// How much surfaces seen at an angle are darkened to show the shape, 0 (flat colours) to 1.
         #[serde(default = "gentle_relief")]
@@ -106,8 +106,8 @@ fn one() -> f64 {
     1.0
 }
 
-fn half() -> f64 {
-    0.5
+fn light_tint() -> f64 {
+    0.3
 }
 
 fn gentle_relief() -> f64 {

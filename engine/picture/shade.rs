@@ -136,7 +136,7 @@ impl Shader {
             }
             Self::Map(look) => drawn(sheet, cos, |_| Layer::opaque(look.colour(f64::from(sheet.value), cos))),
             Self::Regions(look) => {
-                drawn(sheet, cos, |film| Layer::opaque(look.colour(film, cos)).covering(look.opacity))
+                drawn(sheet, cos, |film| Layer::opaque(look.colour(film, cos)).covering(look.hides(cos)))
             }
         }
     }

@@ -89,6 +89,7 @@ pub struct Run {
     settings: RunSettings,
     until: f64,
     is_resumed: bool,
+    has_noted_substeps: bool,
     wall_before: f64,
     last_save: Instant,
     /// Wall time from the last checkpoint, or from the start, to the next.
@@ -162,6 +163,7 @@ impl Run {
             manifest,
             settings,
             is_resumed,
+            has_noted_substeps: false,
         };
         run.manifest.threads = rayon::current_num_threads();
         run.write_manifest(RunState::Running)?;
@@ -220,6 +222,7 @@ impl Run {
             }
             let report = self.step()?;
             progression.step(&report, self.simulation.observables());
+            self.note_substeps(&report, reporter);
             reporter.step(&progression.progress);
             if let Some(frame) = report.frame {
                 self.write_frame(frame, frames)?;
@@ -248,6 +251,21 @@ impl Run {
         let noted = self.events.append(&self.simulation);
         noted.map_err(|cause| file_error(&self.folder, EVENTS, cause))?;
         Ok(report)
+    }
+
+    /// Says, once a session, that steps as long as the scene allows are too long for the film's own motion, and what is done about it.
+    fn note_substeps(&mut self, report: &StepReport, reporter: &mut dyn Reporter) {
+        let substeps = self.simulation.clock().substeps;
+        if self.has_noted_substeps || report.limited_by != Some("maximum_step") || substeps < 2 {
+            return;
+        }
+        self.has_noted_substeps = true;
+        let length = report.step_length;
+        let note = format!(
+            "`maximum_step` is longer than the films' own motion allows: a step of {length:.3e} s is made of {substeps} substeps"
+        );
+        self.folder.log(&note);
+        reporter.note(&note);
     }
 
     fn write_frame(&mut self, frame: u64, frames: &mut dyn FrameSink) -> Result<(), RunError> {

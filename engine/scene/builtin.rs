@@ -9,7 +9,7 @@ use froth_components::authored::mesh_shape::{
     TripleBubble, WireFrame,
 };
 use froth_components::authored::motion::{Drift, Spin, Swirl};
-use froth_components::authored::perturbation::{Bumps, HarmonicMode};
+use froth_components::authored::perturbation::{Bumps, HarmonicMode, Stretch};
 use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Sphere};
 use froth_components::authored::volumes::Volumes;
 use froth_components::authored::wire::{Moves, Wire};
@@ -40,6 +40,7 @@ pub(super) fn register(registry: &mut AuthoredRegistry) {
 
     registry.register::<Film>("Film", "makes a shape a soap film: thickness, surfactant, warmth");
     registry.register::<Bumps>("Bumps", "displaces a film by noise along its normal");
+    registry.register::<Stretch>("Stretch", "stretches films on a mesh along x, y and z");
     registry.register::<HarmonicMode>("HarmonicMode", "displaces a round film by one spherical harmonic");
 
     registry.register::<Drift>("Drift", "velocity of a film at the start");

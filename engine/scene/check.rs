@@ -64,6 +64,7 @@ impl Scene {
         self.check_honoured(self.header.method.name())?;
         self.check_liquid()?;
         self.check_inertia()?;
+        self.check_air()?;
         self.check_wires()?;
         self.check_frames()?;
         let estimate = self.estimate();
@@ -129,6 +130,20 @@ impl Scene {
                 setting: value_of(self.file.text(), "motion").map(|range| self.file.span(range)),
             })
         })
+    }
+
+    /// Films that only the air moves have some.
+    fn check_air(&self) -> Result<(), SceneError> {
+        if self.header.method.name() != MethodName::VortexSheet || self.header.atmosphere.density.si() > 0.0 {
+            return Ok(());
+        }
+        let text = self.file.text();
+        // The liquid has a density too: the one wanted comes after `atmosphere`.
+        let atmosphere = value_of(text, "atmosphere").unwrap_or(0..text.len());
+        let within = value_of(&text[atmosphere.clone()], "density");
+        let at =
+            within.map_or(atmosphere.clone(), |range| atmosphere.start + range.start..atmosphere.start + range.end);
+        Err(SceneError::NoAir { file: self.file.clone(), at: self.file.span(at) })
     }
 
     /// The film that a wire is to hold exists.

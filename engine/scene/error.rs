@@ -1,13 +1,20 @@
 //! What can be wrong with a scene file. Each fault has a stable code with a page of its own ([`crate::errors`]).
 //!
-//! A message says what is wrong; the label points at where; the help says what to write instead.
+//! A message says what is wrong; the label points at where; the help says what to write instead. This file is the list of faults; how
+//! numbers and names are put into words is in `wording`, where a fault lies in `place`.
 
-use std::fmt::Write;
+mod place;
+mod wording;
+
 use std::path::PathBuf;
 
 use miette::{Diagnostic, SourceSpan};
 use thiserror::Error;
 
+pub use self::place::Place;
+use self::wording::{
+    all_of, count, length, memory, missing_help, names_help, one_of, prefix, refinement, rounded_down,
+};
 use super::estimate::Rows;
 use super::text::SceneText;
 
@@ -482,6 +489,23 @@ pub enum SceneError {
         setting: Option<SourceSpan>,
     },
 
+    /// Vortex sheets in a vacuum: only air moves their films.
+    #[error("films of `VortexSheet` are moved by the air around them, and the atmosphere has none")]
+    #[diagnostic(
+        code(F0047),
+        help(
+            "give `atmosphere` a density, e.g. `density: 1.2`, or choose a method whose films have a mass of their own"
+        )
+    )]
+    NoAir {
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The density.
+        #[label("a vacuum")]
+        at: SourceSpan,
+    },
+
     /// A wire that holds a film which does not exist.
     #[error("the wire holds `{found}`, and no film has this name")]
     #[diagnostic(code(F0046), help("{}", names_help(nearest.as_deref(), "films with a `Name`", known)))]
@@ -766,37 +790,6 @@ pub enum SceneError {
     },
 }
 
-/// A place in a scene file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// Name of the file.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-}
-
-impl SceneError {
-    /// Stable code, such as `F0020`.
-    #[must_use]
-    pub fn stable_code(&self) -> String {
-        self.code().map(|code| code.to_string()).unwrap_or_default()
-    }
-
-    /// Where the fault is; `None` where it is the file as a whole.
-    #[must_use]
-    pub fn place(&self) -> Option<Place> {
-        let at = self.labels()?.next()?;
-        let contents = self.source_code()?.read_span(at.inner(), 0, 0).ok()?;
-        Some(Place {
-            file: contents.name().unwrap_or_default().to_owned(),
-            line: contents.line() + 1,
-            column: contents.column() + 1,
-        })
-    }
-}
-
 impl SceneError {
     /// Names the factor on the resolution that came from outside the file, where the fault depends on it.
     pub(crate) fn refined_by(mut self, outside: Option<f64>) -> Self {
@@ -806,99 +799,5 @@ impl SceneError {
             *factor = outside;
         }
         self
-    }
-}
-
-/// What a factor on the resolution did to the scene's own number of carriers.
-fn refinement(factor: Option<f64>, noun: &str) -> String {
-    let say = |factor: f64| {
-        let times = factor * factor;
-        let times = if (0.01..1e6).contains(&times) { times.to_string() } else { format!("{times:.1e}") };
-        format!("; `--resolution {factor}` makes {times} times as many {noun} as the file says")
-    };
-    factor.map(say).unwrap_or_default()
-}
-
-fn missing_help(nearest: Option<&str>) -> String {
-    match nearest {
-        Some(nearest) => format!("did you mean `{nearest}`?"),
-        None => "write the path of a scene file; `froth scenes` lists those built in".to_owned(),
-    }
-}
-
-fn names_help(nearest: Option<&str>, kind: &str, known: &[String]) -> String {
-    let mut help = String::new();
-    if let Some(nearest) = nearest {
-        let _ = write!(help, "did you mean `{nearest}`? ");
-    }
-    let _ = match known {
-        [] => write!(help, "there are no {kind} here"),
-        known => write!(help, "{kind}: {}", known.join(", ")),
-    };
-    help
-}
-
-/// `field: `, or nothing where there is no field.
-fn prefix(field: &str) -> String {
-    if field.is_empty() { String::new() } else { format!("`{field}`: ") }
-}
-
-fn one_of(names: &[&str]) -> String {
-    match names {
-        [only] => format!("`{only}`"),
-        names => format!("one of {}", names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")),
-    }
-}
-
-/// Bytes as a person says them.
-fn memory(bytes: u64) -> String {
-    const UNITS: [(&str, f64); 6] = [("EB", 1e18), ("PB", 1e15), ("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)];
-    let bytes = bytes as f64;
-    let (unit, size) = UNITS.into_iter().find(|(_, size)| bytes >= *size).unwrap_or(("bytes", 1.0));
-    format!("{:.1} {unit}", bytes / size)
-}
-
-/// A number of particles as a person says it.
-fn count(number: u64) -> String {
-    if number < 10_000_000 { number.to_string() } else { format!("{:.1e}", number as f64) }
-}
-
-/// What films are made of as a person says it.
-fn all_of(rows: &Rows) -> String {
-    match *rows {
-        Rows::Particles { eulerian, lagrangian, .. } => {
-            format!("{} Eulerian and {} Lagrangian particles", count(eulerian), count(lagrangian))
-        }
-        Rows::Mesh { vertices, faces } => format!("{} vertices and {} faces", count(vertices), count(faces)),
-    }
-}
-
-/// Metres as a scene file would have them.
-fn length(metres: f64) -> String {
-    const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)];
-    let (unit, size) = UNITS.into_iter().find(|(_, size)| metres >= 0.999 * size).unwrap_or(("nm", 1e-9));
-    // Three digits are enough, without the zeros that would fill them.
-    let digits = format!("{:.2}", metres / size);
-    format!("{} {unit}", digits.trim_end_matches('0').trim_end_matches('.'))
-}
-
-/// The next lower number of two digits, so that a limit that is printed still holds.
-fn rounded_down(value: f64) -> f64 {
-    let digit = 10_f64.powf(value.log10().floor() - 1.0);
-    (value / digit).floor() * digit
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantities_are_said_as_people_do() {
-        assert_eq!(length(0.05), "5 cm");
-        assert_eq!(length(rounded_down(0.045_76)), "4.5 cm");
-        assert_eq!(length(1.5e-6), "1.5 um");
-        assert_eq!(memory(860_000_000), "860.0 MB");
-        assert_eq!(count(4000), "4000");
-        assert_eq!(count(1_000_000_000_000), "1.0e12");
     }
 }

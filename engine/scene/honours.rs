@@ -9,8 +9,11 @@ use froth_components::authored::shape::Shape;
 /// What geometric flow honours besides shapes. Its films have thickness, hence weight and colour, but no liquid that flows.
 const BY_GEOMETRIC_FLOW: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Drift", "Gravity"];
 
+/// What vortex sheets honour besides shapes. Films have weight; the air starts at rest.
+const BY_VORTEX_SHEET: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Gravity"];
+
 /// What takes a mesh, besides [`MeshShape`].
-const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes"];
+const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes", "Stretch"];
 
 /// What acts on the liquid within a film alone.
 const ON_LIQUID: &[&str] = &["HeatSource", "Spin", "Swirl"];
@@ -27,7 +30,7 @@ pub(super) fn needs_liquid(component: &str) -> bool {
 pub(super) fn has_liquid(method: &MethodChoice) -> bool {
     match method {
         MethodChoice::Melp(settings) => settings.liquid_per_carrier > 0,
-        MethodChoice::GeometricFlow(_) => false,
+        MethodChoice::GeometricFlow(_) | MethodChoice::VortexSheet(_) => false,
         _ => true,
     }
 }
@@ -53,6 +56,9 @@ pub fn honours(method: MethodName, component: &str) -> bool {
         MethodName::Melp => !takes_mesh,
         MethodName::GeometricFlow => {
             takes_mesh || Shape::NAMES.contains(&component) || BY_GEOMETRIC_FLOW.contains(&component)
+        }
+        MethodName::VortexSheet => {
+            takes_mesh || Shape::NAMES.contains(&component) || BY_VORTEX_SHEET.contains(&component)
         }
         _ => true,
     }

@@ -86,7 +86,8 @@ impl Inertia {
         let step = (0.7 / root * period).min(self.courant * spacing / (2.0 * TENSION / MASS).sqrt());
         let [shape, crowding] = slow_part(degree, self.mass, exact);
         let samples = series(&mut simulation, step, PERIODS * period, |sim| {
-            shape * shape_amplitude(sim, RADIUS, |x| harmonic.at(x)) + crowding * surfactant_amplitude(sim, &harmonic)
+            shape * shape_amplitude::<EulerianParticle>(sim, RADIUS, |x| harmonic.at(x))
+                + crowding * surfactant_amplitude(sim, &harmonic)
         })?;
         Ok(Oscillation::fit(&samples, exact))
     }

@@ -34,7 +34,7 @@ pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
 }
 
 /// The octahedral film of an area: the minimum next to it.
-fn nearest(area: f64) -> (String, Minimum) {
+pub(super) fn nearest(area: f64) -> (String, Minimum) {
     let minima = OCTAHEDRAL.map(|kind| (format!(" ({kind})"), Minimum::of(&format!("octahedral_frame_{kind}"))));
     let off = |minimum: &Minimum| (area - minimum.area).abs();
     minima.into_iter().min_by(|a, b| off(&a.1).total_cmp(&off(&b.1))).expect("invariant: there are five")

@@ -9,6 +9,7 @@
 //!
 //! `froth verify` prints the findings; `tests/laws.rs` asserts the quick ones.
 
+mod air_modes;
 mod breathing;
 mod catenoid;
 mod clusters;
@@ -16,6 +17,7 @@ mod coalescence;
 mod curvature;
 mod double_bubble;
 mod drainage;
+mod drum_in_air;
 mod elastic_shape_modes;
 mod equilibrium_disc;
 pub mod finding;
@@ -32,11 +34,18 @@ mod resting_bubble;
 mod sampled;
 mod scene_run;
 mod shape_modes;
+mod sheet_clusters;
+mod sheet_cube;
+mod sheet_energy;
+mod sheet_impulse;
+mod sheet_run;
+mod sheet_scenes;
 mod sphere_volume;
 mod transfers;
 mod young_laplace;
 
 use froth_components::quantity::nearest;
+use froth_sheet::SheetError;
 use froth_systems::operators::conjugate_gradient::NotConverged;
 use thiserror::Error;
 
@@ -204,6 +213,48 @@ pub const LAWS: &[Law] = &[
         source: "Surface Evolver, assets/evolver",
         measure: clusters::measure,
     },
+    Law {
+        name: "air_modes",
+        summary: "a bubble in air rings at omega^2 = n (n - 1)(n + 1)(n + 2) 2 sigma/((2 n + 1) rho R^3)",
+        source: "Lamb 1932, §275, air on both sides",
+        measure: air_modes::measure,
+    },
+    Law {
+        name: "drum_in_air",
+        summary: "a film on a ring swings in air at omega^2 = 5.8598 (2 sigma)/(rho a^3)",
+        source: "derived in its file",
+        measure: drum_in_air::measure,
+    },
+    Law {
+        name: "sheet_energy",
+        summary: "a bubble in air keeps the sum of its kinetic energy and that of its film",
+        source: "K + 2 sigma A is constant",
+        measure: sheet_energy::measure,
+    },
+    Law {
+        name: "sheet_cube",
+        summary: "a cube of film rings on in air, and settles to a sphere where it is damped",
+        source: "Da 2015, figs. 4 and 8",
+        measure: sheet_cube::measure,
+    },
+    Law {
+        name: "sheet_clusters",
+        summary: "clusters in air come to rest with Plateau's angles and Laplace's pressures",
+        source: "Plateau 1873, Laplace 1806; closed forms",
+        measure: sheet_clusters::measure,
+    },
+    Law {
+        name: "sheet_impulse",
+        summary: "a free cluster in air has the impulse that its weight gives it, and none without",
+        source: "Saffman 1992, §3.2",
+        measure: sheet_impulse::measure,
+    },
+    Law {
+        name: "sheet_scenes",
+        summary: "the scenes of vortex sheets run to their end, and what shall happen happens",
+        source: "Da 2015, table 1",
+        measure: sheet_scenes::measure,
+    },
 ];
 
 /// The law of a name.
@@ -231,4 +282,7 @@ pub enum LawError {
     /// A film could not be sampled evenly.
     #[error("the film cannot be sampled evenly: {0}")]
     Sampling(#[from] NotConverged),
+    /// The flow around a sheet could not be worked out.
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
 }

@@ -1,7 +1,7 @@
 //! Runs a built-in scene for a law.
 
 use froth_components::film::Area;
-use froth_components::kind::EulerianParticle;
+use froth_components::kind::Kind;
 use froth_components::motion::Position;
 use glam::DVec3;
 
@@ -52,10 +52,14 @@ pub(super) fn series(
     Ok(samples)
 }
 
-/// Largest component, relative to `radius`, that the distance of the carriers from the origin has along `pattern`.
-pub(super) fn shape_amplitude(simulation: &mut Simulation, radius: f64, pattern: impl Fn(DVec3) -> f64) -> f64 {
-    let places = simulation.column::<EulerianParticle, Position>();
-    let areas = simulation.column::<EulerianParticle, Area>();
+/// Largest component, relative to `radius`, that the distance of the carriers `K` from the origin has along `pattern`.
+pub(super) fn shape_amplitude<K: Kind>(
+    simulation: &mut Simulation,
+    radius: f64,
+    pattern: impl Fn(DVec3) -> f64,
+) -> f64 {
+    let places = simulation.column::<K, Position>();
+    let areas = simulation.column::<K, Area>();
     let terms = places.iter().zip(&areas).map(|(x, a)| {
         // Before the first step no area is measured; carriers are spread evenly then.
         let a = if a.0 > 0.0 { a.0 } else { 1.0 };

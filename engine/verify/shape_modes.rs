@@ -8,6 +8,7 @@
 //! The scene has no material particles, hence uniform tension. Steps shorten with the spacing, so that one order is
 //! seen for both.
 
+use froth_components::kind::EulerianParticle;
 use froth_systems::sampling::harmonic::Harmonic;
 
 use super::finding::{Finding, Refinement};
@@ -64,6 +65,7 @@ fn ring(degree: u32, count: u32) -> Result<Oscillation, LawError> {
     let harmonic = Harmonic::new(degree, 0);
     let exact = exact_frequency(degree);
     let end = PERIODS * std::f64::consts::TAU / exact;
-    let samples = series(&mut simulation, step, end, |sim| shape_amplitude(sim, RADIUS, |x| harmonic.at(x)))?;
+    let samples =
+        series(&mut simulation, step, end, |sim| shape_amplitude::<EulerianParticle>(sim, RADIUS, |x| harmonic.at(x)))?;
     Ok(Oscillation::fit(&samples, exact))
 }

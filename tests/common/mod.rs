@@ -70,6 +70,28 @@ pub(crate) const FOAM: &str = r#"Scene(
 )
 "#;
 
+/// A small cluster in air with T1 processes, wires and bursts, and `summation` of its pairs: what every stage of vortex sheets has to do.
+pub(crate) fn sheets(summation: &str) -> String {
+    format!(
+        r#"Scene(
+    title: "Films in air",
+    method: VortexSheet(summation: {summation}, diffusivity: "2 cm^2/s"),
+    resolution: Spacing("1.2 cm"),
+    duration: "0.05 s",
+    frames_per_second: 100,
+    picture: (width: 96, height: 96),
+    entities: [
+        [ Lattice(cell: "3 cm", counts: (2, 2, 1)), Film(thickness: Noise(mean: "400 nm", relative: 0.2)) ],
+        [ Catenoid(centre: (0.25, 0.0, 0.0), radius: "3 cm", gap: "3 cm"), Film(thickness: Uniform("300 nm")) ],
+        [ Wire(path: Ring(centre: (0.25, "1.5 cm", 0.0), axis: (0, 1, 0), radius: "3 cm")), Moves(velocity: (0, 0.05, 0)) ],
+        [ Gravity((0.0, -1.0, 0.0)) ],
+        [ Burst(every: "0.02 s", first: "0.01 s") ],
+    ],
+)
+"#
+    )
+}
+
 /// Number of the last frame of [`SCENE`].
 pub(crate) const LAST_FRAME: u64 = 12;
 

@@ -1,0 +1,124 @@
+//! A cube of film in air rings on without artificial smoothing, and with damping comes to rest as a sphere.
+//!
+//! # Equation
+//! Parts of the shape `r/R - 1` along the cubic harmonic of degree 4, `(x^4 + y^4 + z^4)/r^4 - 3/5`, and along the harmonics of degree 2,
+//! which a cube has not: they show how far mesh and topology break its symmetry. A sphere of flat faces of mean area `f` that
+//! encloses the exact volume has its vertices at `R (1 + h^2/(8 R^2))`, `h^2 = 4 f/sqrt(3)`.
+//!
+//! # Limits
+//! The cube's edges and corners hold energy in waves shorter than the mesh: that part of its energy is lost in the first period.
+
+use std::f64::consts::PI;
+
+use froth_components::kind::MeshVertex;
+use froth_components::motion::Position;
+use froth_systems::sampling::harmonic::Harmonic;
+use glam::DVec3;
+
+use super::finding::Finding;
+use super::mesh_run::{MeshRun, unbroken};
+use super::scene_run::{SceneRun, shape_amplitude};
+use super::sheet_run::{TENSION, air_period, energies};
+use super::{Effort, LawError};
+use crate::simulation::Simulation;
+
+const SIDE: f64 = 0.08;
+const BAR_OF_VOLUME: f64 = 1e-4;
+
+pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
+    let mut findings = ringing(effort)?;
+    findings.extend(damped(effort)?);
+    Ok(findings)
+}
+
+/// Radius of the sphere of the cube's volume, m.
+fn radius() -> f64 {
+    SIDE * (3.0 / (4.0 * PI)).cbrt()
+}
+
+/// Parts of the shape at a time.
+struct Shape {
+    /// Of degree 2, all orders together.
+    second: f64,
+    /// Of the cubic harmonic of degree 4.
+    fourth: f64,
+}
+
+impl Shape {
+    fn of(simulation: &mut Simulation) -> Self {
+        let squares = (-2..=2).map(|order| {
+            let harmonic = Harmonic::new(2, order);
+            shape_amplitude::<MeshVertex>(simulation, radius(), |x| harmonic.at(x)).powi(2)
+        });
+        let second = squares.sum::<f64>().sqrt();
+        Self { second, fourth: shape_amplitude::<MeshVertex>(simulation, radius(), cubic) }
+    }
+}
+
+/// The cubic harmonic of degree 4.
+fn cubic(x: DVec3) -> f64 {
+    let [x, y, z] = x.normalize_or_zero().to_array().map(|c| c.powi(4));
+    x + y + z - 0.6
+}
+
+fn ringing(effort: Effort) -> Result<Vec<Finding>, LawError> {
+    let (edge, periods, faded) = effort.choose(("8 mm", 3.0, 0.4), ("3.2 mm", 10.0, 0.2));
+    let scene = SceneRun::of("cube_oscillation").with("Spacing(\"3.2 mm\")", &format!("Spacing(\"{edge}\")"));
+    let mut run = MeshRun::begin(&scene)?;
+    let period = air_period(4, radius());
+    let end = periods * period;
+    let begun = energies(&mut run)?;
+    let (mut first, mut last, mut second) = (0.0_f64, 0.0_f64, 0.0_f64);
+    while !run.simulation.has_reached(end) {
+        run.step_within(end)?;
+        let (time, shape) = (run.simulation.time(), Shape::of(&mut run.simulation));
+        second = second.max(shape.second);
+        // The cube itself is no part of a wave: its first swing is.
+        if time > 0.25 * period && time <= 1.25 * period {
+            first = first.max(shape.fourth.abs());
+        }
+        if time > end - period {
+            last = last.max(shape.fourth.abs());
+        }
+    }
+    let now = energies(&mut run)?;
+    let available = begun.total() - 2.0 * TENSION * 4.0 * PI * radius().powi(2);
+    let lost = begun.total() - now.total();
+    Ok(vec![
+        Finding::relative(
+            format!("cube: l = 4 after {periods} periods over that of the first"),
+            1.0,
+            last / first,
+            faded,
+        ),
+        Finding::vanishing("cube: l = 2, largest", second, 0.05),
+        Finding::vanishing("cube: total energy lost, relative", lost / begun.total(), 0.1),
+        Finding::vanishing("cube: lost of the energy above the sphere's, relative", lost / available, 0.7),
+        Finding::vanishing("cube: error of the volume in any step, relative", run.volume_error, BAR_OF_VOLUME),
+        unbroken([run.violation()]),
+    ])
+}
+
+fn damped(effort: Effort) -> Result<Vec<Finding>, LawError> {
+    let (edge, end, tolerance) = effort.choose(("8 mm", 0.4, 5e-3), ("5 mm", 0.8, 1e-3));
+    let scene = SceneRun::of("cube_damped").with("Spacing(\"5 mm\")", &format!("Spacing(\"{edge}\")"));
+    let mut run = MeshRun::at(&scene, end)?;
+    let surface = run.surface();
+    let face = surface.film_area() / surface.mesh.face_count() as f64;
+    let lengths: Vec<f64> = run.simulation.column::<MeshVertex, Position>().iter().map(|x| x.0.length()).collect();
+    let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+    let off = lengths.iter().map(|r| (r / mean - 1.0).abs()).fold(0.0, f64::max);
+    let expected = radius() + 4.0 * face / (3f64.sqrt() * 8.0 * radius());
+    Ok(vec![
+        Finding::relative("damped cube: mean radius, m", expected, mean, tolerance),
+        Finding::vanishing("damped cube: largest deviation from it, relative", off, tolerance),
+        Finding::relative(
+            "damped cube: excess pressure, Pa",
+            4.0 * TENSION / radius(),
+            run.observed("excess_pressure_1"),
+            0.01,
+        ),
+        Finding::vanishing("damped cube: error of the volume in any step, relative", run.volume_error, BAR_OF_VOLUME),
+        unbroken([run.violation()]),
+    ])
+}

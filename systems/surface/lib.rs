@@ -36,7 +36,7 @@ pub mod transfer;
 
 pub use event::{Event, EventKind};
 pub use mesh::{Face, Remap, SurfaceMesh};
-pub use policy::{Contact, Policy};
+pub use policy::{Contact, Placement, Policy};
 pub use remesh::{Remeshed, Tracker};
 pub use rows::{FaceRow, PerVertex, Region, VertexRow};
 pub use surface::{LabelledTriangles, Surface};

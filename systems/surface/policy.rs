@@ -12,6 +12,17 @@ pub enum Contact {
     Bounce,
 }
 
+/// Where the vertices go that splits make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Placement {
+    /// In the middles of their edges: neither shape nor volumes change.
+    #[default]
+    Midpoint,
+    /// Where the smooth film has the middle (modified butterfly), if nothing is in the way. Volumes change by what lies between: it is
+    /// for methods that give bubbles their volumes back.
+    Butterfly,
+}
+
 /// Thresholds of the tracker. Lengths are multiples of [`Policy::edge`], angles radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Policy {
@@ -29,6 +40,8 @@ pub struct Policy {
     pub flips: bool,
     /// Whether films that meet in a point or a line alone are pulled apart (T1, pinching).
     pub separation: bool,
+    /// Where the vertices of splits of long edges go.
+    pub placement: Placement,
 }
 
 impl Policy {
@@ -74,12 +87,24 @@ impl Policy {
     pub const LARGEST_MOVE: f64 = 0.45;
     /// No collapse or flip changes the volume of a region by more than this many `L^3`.
     pub const LARGEST_VOLUME_CHANGE: f64 = 0.01;
+    /// No vertex of a split goes farther from the middle of its edge than this part of the edge's length: a film bent that much is not
+    /// resolved.
+    pub const LARGEST_BULGE: f64 = 0.25;
     /// Two faces that bend by more than this are not flipped: 30 degrees.
     pub const LARGEST_FLIP_BEND: f64 = std::f64::consts::FRAC_PI_6;
 
     /// The usual thresholds for an edge length, metres.
     #[must_use]
     pub fn new(edge: f64) -> Self {
-        Self { edge, shortest: 0.5, longest: 1.5, snap: 0.1, contact: Contact::Merge, flips: false, separation: true }
+        Self {
+            edge,
+            shortest: 0.5,
+            longest: 1.5,
+            snap: 0.1,
+            contact: Contact::Merge,
+            flips: false,
+            separation: true,
+            placement: Placement::Midpoint,
+        }
     }
 }

@@ -5,7 +5,7 @@
 //!
 //! | operation | file | changes topology |
 //! |---|---|---|
-//! | split of an edge or a face | `split` | never |
+//! | split of an edge or a face | `split`, `butterfly` | never |
 //! | collapse of an edge | `collapse` | closes necks, makes films meet |
 //! | separation of a vertex (T1, pinch) | `separate` | pulls apart what meets without a film |
 //! | contact of two sectors (T1 from an edge to a film) | `contact` | gives two regions a film |
@@ -18,6 +18,7 @@
 //! | burst of a film | `burst` | joins two regions |
 
 mod burst;
+mod butterfly;
 mod checks;
 mod collapse;
 mod contact;

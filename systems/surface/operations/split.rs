@@ -1,12 +1,14 @@
-//! Splits of edges and faces. They never change topology, and at a midpoint not even the shape.
+//! Splits of edges and faces. They never change topology, and at a midpoint not even the shape; where the vertices of a smooth film go is
+//! in [`butterfly`](super::butterfly).
 
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
 use super::Session;
+use super::butterfly::smooth_middle;
 use super::plan::{Added, Plan};
 use crate::mesh::Face;
-use crate::policy::Policy;
+use crate::policy::{Placement, Policy};
 use crate::rows::{FaceRow, VertexRow};
 use crate::surface::Surface;
 use crate::transfer::Blend;
@@ -43,14 +45,34 @@ impl Session<'_> {
         let mut queue = self.edges_by_length(|length| length > longest);
         while !queue.is_empty() {
             let mut halves = Vec::new();
-            for [a, b] in queue.into_iter().rev().map(|(_, edge)| edge) {
-                if let Some(new) = self.split_at_midpoint(a, b) {
+            // All from the mesh as it is: once edges beside are split, rings are no longer even.
+            let placed: Vec<_> = queue.into_iter().rev().map(|(_, edge)| (edge, self.smooth_place(edge))).collect();
+            for ([a, b], smooth) in placed {
+                if let Some(new) = self.split_smoothly(a, b, smooth) {
                     halves.extend(self.surface.mesh.neighbours(new).into_iter().map(|end| sorted(new, end)));
                 }
             }
             halves.sort_unstable();
             halves.dedup();
             queue = self.by_length(halves, |length| length > longest);
+        }
+    }
+
+    /// Splits an edge in the middle, and moves the new vertex to where a smooth film has it.
+    fn split_smoothly(&mut self, a: VertexRow, b: VertexRow, smooth: Option<DVec3>) -> Option<VertexRow> {
+        let length = self.length(a, b);
+        let new = self.split_at_midpoint(a, b)?;
+        if let Some(place) = smooth {
+            self.bulge(new, place, length);
+        }
+        Some(new)
+    }
+
+    /// Where the vertex of a split goes, if not to the middle of the edge.
+    fn smooth_place(&self, [a, b]: [VertexRow; 2]) -> Option<DVec3> {
+        match self.policy.placement {
+            Placement::Midpoint => None,
+            Placement::Butterfly => smooth_middle(self.surface, a, b),
         }
     }
 

@@ -7,7 +7,7 @@ use froth_surface::corners::LeastAngles;
 use froth_surface::invariants::check_all;
 use froth_surface::operations::Counts;
 use froth_surface::shapes::{catenoid, double_bubble, icosphere, kelvin_cells, lattice, sphere_lattice};
-use froth_surface::{EventKind, Surface};
+use froth_surface::{EventKind, Placement, Surface};
 use glam::DVec3;
 
 /// What a run did. Angles are those after the first five steps, degrees.
@@ -209,4 +209,28 @@ fn without_flips_and_smoothing_angles_stay_above_eight_degrees() {
     (films.policy.flips, films.smoothing) = (false, 0.0);
     let run = watch("kelvin, no flips", &mut films, 60, |_, _| ());
     assert!(run.least.rest > 8.0);
+}
+
+/// A bubble of which every edge is split in one step of flow: how far vertices are from their mean distance to the middle after the
+/// splits and after the step, relative, and by how much its volume has changed.
+fn refine(placement: Placement) -> ([f64; 2], f64) {
+    let mut films = Films::new(&icosphere(DVec3::ZERO, 1.0, 0.3), 0.13, 1e-4);
+    films.policy.placement = placement;
+    films.smoothing = 0.0;
+    let before = films.surface.volumes()[1];
+    let mut off = Vec::new();
+    films.step(|films, _| {
+        check_all(&films.surface).unwrap();
+        let distances: Vec<f64> = films.surface.positions.iter().map(|x| x.length()).collect();
+        let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+        off.push(distances.iter().map(|r| (r / mean - 1.0).abs()).fold(0.0, f64::max));
+    });
+    ([off[0], off[off.len() - 1]], films.surface.volumes()[1] / before - 1.0)
+}
+
+#[test]
+fn a_bubble_that_butterfly_refines_is_round_at_once_and_gets_its_volume_back() {
+    let ((flat, flat_change), (round, change)) = (refine(Placement::Midpoint), refine(Placement::Butterfly));
+    assert!(round[0] < 0.3 * flat[0] && round[1] < 0.5 * flat[1], "{round:?} {flat:?}");
+    assert!(change.abs() < 1e-9 && flat_change.abs() < 1e-9, "{change:e} {flat_change:e}");
 }

@@ -6,7 +6,7 @@ mod scenes;
 use froth_surface::invariants::check_all;
 use froth_surface::shapes::{disc, double_bubble, icosphere, lattice};
 use froth_surface::transfer::{Columns, Transfer};
-use froth_surface::{FaceRow, LabelledTriangles, PerVertex, Policy, Surface, VertexRow};
+use froth_surface::{FaceRow, LabelledTriangles, PerVertex, Placement, Policy, Surface, VertexRow};
 use glam::DVec3;
 use scenes::{at, edges_with, film, ghosts, hexagon, operate, square, tetrahedron_at};
 
@@ -161,4 +161,53 @@ fn a_split_lays_no_film_flat_on_another_of_the_same_junction() {
     };
     assert!(split(1e-2) && split(1e-4));
     assert!(!split(1e-8) && !split(1e-16) && !split(0.0));
+}
+
+/// Splits all edges of a bubble of radius 1 that are longer than 1.5 `edge`; how far vertices are from the sphere at most.
+fn roundness_after_splits(mut surface: Surface, edge: f64, placement: Placement) -> (Surface, f64) {
+    operate(&mut surface, &Policy { placement, ..Policy::new(edge) }, |session| session.split_long_edges());
+    check_all(&surface).unwrap();
+    let off = surface.positions.iter().map(|x| (x.length() - 1.0).abs()).fold(0.0, f64::max);
+    (surface, off)
+}
+
+#[test]
+fn butterfly_splits_of_a_bubble_lie_nearer_to_the_sphere_and_refine_to_the_same_mesh() {
+    let bubble = Surface::from_triangles(&icosphere(DVec3::ZERO, 1.0, 0.3));
+    let (flat, chord) = roundness_after_splits(bubble.clone(), 0.13, Placement::Midpoint);
+    let (round, smooth) = roundness_after_splits(bubble.clone(), 0.13, Placement::Butterfly);
+    assert!(flat.mesh.vertex_rows() > 3 * bubble.mesh.vertex_rows());
+    assert!(smooth < 0.3 * chord, "{smooth:e} {chord:e}");
+    // Half as long edges leave out a quarter of what a sphere has more than its mesh.
+    let missing = |surface: &Surface| 4.0 / 3.0 * std::f64::consts::PI - surface.volumes()[1];
+    assert!((missing(&flat) / missing(&bubble) - 1.0).abs() < 1e-9);
+    assert!(missing(&round) < 0.4 * missing(&bubble), "{} {}", missing(&round), missing(&bubble));
+}
+
+#[test]
+fn a_butterfly_split_falls_back_to_the_middle_where_it_would_cross_a_nearby_film() {
+    let bubble = icosphere(DVec3::ZERO, 1.0, 0.3);
+    let surface = Surface::from_triangles(&bubble);
+    let [a, b] = surface.mesh.edges()[0];
+    let middle = surface.positions[a].midpoint(surface.positions[b]);
+    // A small bubble just outside the edge, in the way of the bulge.
+    let outside = middle.normalize() * (middle.length() + 0.6 * (1.0 - middle.length()));
+    let (u, v) = middle.normalize().any_orthonormal_pair();
+    let reach = 0.2 * (1.0 - middle.length());
+    let mut both = bubble.clone();
+    let corners = [u, v, -u - v].map(|way| outside + reach * way);
+    tetrahedron_at(&mut both, [corners[0], corners[1], corners[2], outside + 0.3 * middle.normalize()], 2, 0);
+    let placed = |set: &LabelledTriangles| {
+        let mut surface = Surface::from_triangles(set);
+        check_all(&surface).unwrap();
+        let length = surface.positions[a].distance(surface.positions[b]);
+        // Just short enough an `L` that this edge is split; longer ones are, too.
+        let policy = Policy { placement: Placement::Butterfly, ..Policy::new(length / 1.5 * (1.0 - 1e-9)) };
+        operate(&mut surface, &policy, |session| session.split_long_edges());
+        check_all(&surface).unwrap();
+        let nearest = surface.positions.iter().map(|x| x.distance(middle)).fold(f64::INFINITY, f64::min);
+        nearest / (1.0 - middle.length())
+    };
+    assert!(placed(&bubble) > 0.5, "the vertex goes out to the sphere");
+    assert!(placed(&both) < 1e-12, "the vertex stays in the middle");
 }

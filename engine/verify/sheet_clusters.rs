@@ -77,8 +77,7 @@ fn held_against(cluster: &Cluster, parts: f64, effort: Effort) -> Result<Vec<Fin
         let measured = run.observed(&format!("excess_pressure_{region}"));
         Finding::relative(what, 4.0 * TENSION / radius, measured, coarse * CURVATURE)
     }));
-    // The small wall of unequal bubbles is a few coarse edges across.
-    findings.push(wall(cluster, &surface, smallest, effort.choose(0.1, CURVATURE)));
+    findings.push(wall(cluster, &surface, smallest, coarse * CURVATURE));
     findings.push(Finding::vanishing(format!("{name}: error of a volume in any step"), run.volume_error, 1e-4));
     findings.push(unbroken([run.violation()]));
     Ok(findings)
@@ -119,8 +118,8 @@ fn wall_curvature(surface: &Surface) -> f64 {
         let d = *x - middle;
         ([1.0, d.dot(u), d.dot(v), 0.5 * d.length_squared()], d.dot(normal))
     };
-    let [_, s, t, k] = least_squares(places.iter().map(row));
-    k.abs() / (1.0 + s * s + t * t).sqrt()
+    let [c, s, t, k] = least_squares(places.iter().map(row));
+    k.abs() / (1.0 + s * s + t * t - 2.0 * c * k).sqrt()
 }
 
 /// Direction across a nearly flat set of points: the mean normal of triangles about their middle.
@@ -139,4 +138,17 @@ fn mean(deviation: Option<Deviation>) -> f64 {
 fn extreme(deviation: Option<Deviation>) -> f64 {
     let Deviation { above, below, .. } = deviation.unwrap_or(Deviation::UNKNOWN);
     above.max(-below).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froth_surface::shapes::double_bubble;
+
+    #[test]
+    fn the_wall_of_an_unequal_double_bubble_has_the_difference_of_curvatures() {
+        let surface = Surface::from_triangles(&double_bubble(DVec3::ZERO, DVec3::X, 1.0, 0.56, 0.06));
+        let expected = 1.0 / 0.56 - 1.0;
+        assert!((wall_curvature(&surface) / expected - 1.0).abs() < 1e-6, "{}", wall_curvature(&surface));
+    }
 }

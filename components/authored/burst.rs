@@ -9,7 +9,7 @@ use crate::quantity::{Refusal, RefusalKind, Time, range};
 /// [`order`](Self::order), and a film of it pops. The film towards the outside, if it has one; otherwise its largest. The bubble
 /// becomes one region with what is beyond that film, at the sum of both volumes.
 ///
-/// It ends when no bubble is left.
+/// It ends when no bubble is left. Times that differ by rounding alone, a [billionth](Self::ROUNDING) of an interval, are the same.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct Burst {
     /// Time between bursts, seconds.
@@ -21,10 +21,14 @@ pub struct Burst {
 }
 
 impl Burst {
+    /// Part of an interval by which times may differ and still be the same, dimensionless.
+    pub const ROUNDING: f64 = 1e-9;
+
     /// Number of bursts that are due by a time, seconds since the start.
     #[must_use]
     pub fn due_by(&self, time: f64) -> u64 {
-        if time < self.first.si() { 0 } else { 1 + ((time - self.first.si()) / self.every.si()) as u64 }
+        let intervals = (time - self.first.si()) / self.every.si() + Self::ROUNDING;
+        if intervals < 0.0 { 0 } else { 1 + intervals as u64 }
     }
 
     /// Time of the next burst after `done` of them, seconds since the start.
@@ -119,6 +123,17 @@ mod tests {
         assert_eq!(due, [0, 0, 1, 1, 2, 5]);
         assert_eq!((bursts.time_of(0), bursts.time_of(4)), (2.0, 4.0));
         assert_eq!(burst("(every: 0.5)").first.si(), 0.5);
+    }
+
+    #[test]
+    fn a_burst_is_due_at_its_time_however_that_is_rounded() {
+        let bursts = burst("(every: 0.1)");
+        for done in 0..1000 {
+            let time = bursts.time_of(done);
+            for at in [time.next_down(), time, time.next_up(), 0.1 * (done + 1) as f64] {
+                assert_eq!(bursts.due_by(at), done + 1, "{done}");
+            }
+        }
     }
 
     #[test]

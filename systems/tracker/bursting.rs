@@ -19,14 +19,15 @@ use crate::sampling::random::{self, Use};
 #[serde(transparent)]
 pub struct BurstsDone(pub Vec<u64>);
 
-/// Lets no step pass the next burst.
+/// Lets no step pass the next burst. One at the horizon but for rounding is no other moment, which would take a step of its own.
 pub fn stop_at_bursts(bursts: Query<(&PlaceInScene, &Burst)>, done: Res<BurstsDone>, mut clock: ResMut<Clock>) {
     let mut bursts: Vec<(&PlaceInScene, &Burst)> = bursts.iter().collect();
     bursts.sort_by_key(|(place, _)| **place);
     for (number, (_, burst)) in bursts.into_iter().enumerate() {
         let next = burst.time_of(done.0.get(number).copied().unwrap_or(0));
-        if next > clock.time {
-            clock.horizon = clock.horizon.min(next);
+        let before = clock.horizon - Burst::ROUNDING * burst.every.si();
+        if next > clock.time && next < before {
+            clock.horizon = next;
         }
     }
 }

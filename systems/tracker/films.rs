@@ -1,6 +1,5 @@
 //! The films of a world as one [`Surface`]: the mesh with the positions of its rows.
 
-use bevy_ecs::query::With;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 use froth_components::kind::MeshVertex;
@@ -61,9 +60,4 @@ pub fn put_back(world: &mut World, surface: Surface) {
     fill_column::<MeshVertex, _>(world, &positions);
     world.resource_mut::<OpenRegions>().0 = surface.open;
     *world.resource_mut::<SurfaceMesh>() = surface.mesh;
-}
-
-/// Number of mesh vertices.
-pub fn vertex_count(world: &mut World) -> usize {
-    world.query_filtered::<(), With<MeshVertex>>().iter(world).count()
 }

@@ -85,7 +85,7 @@ fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mu
 /// The second kick, damping and impulse, where the films have come to.
 fn settle(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(), SheetFault> {
     let rules = *world.resource::<SheetRules>();
-    let SheetWork { sheet, state, heads, forces, impulses, kept_impulses, report, .. } = work;
+    let SheetWork { sheet, state, heads, forces, impulses, report, .. } = work;
     let forcing = forcing(world, forces);
     heads.clone_from(&sheet.heads);
     sheet.measure(&state.positions);
@@ -101,16 +101,30 @@ fn settle(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(
     let kept = (-rules.damping * substep.length).exp();
     state.potentials.iter_mut().for_each(|phi| *phi *= kept);
     centre(&sheet.layout, &mut state.potentials);
-    let names = sheet.clusters.names(&sheet.layout).into_iter();
-    *kept_impulses = names.zip(sheet.impulses(&state.potentials)).collect();
-    let pressures = sheet.region_pressures();
-    let mut gas = world.resource_mut::<BubbleGas>();
-    for (region, pressure) in &mut gas.pressures {
-        *pressure = pressures.get(region).copied().unwrap_or(0.0);
-    }
     let potentials = Potentials::scattered(&sheet.layout, &state.potentials, heads);
     *world.resource_mut::<Potentials>() = potentials;
     Ok(())
+}
+
+/// Fits one pressure per bubble to those that the films show where the step has taken them.
+pub fn fit_pressures(world: &mut World) {
+    with_work(world, Stage::Advance, |world, work, _| {
+        let pressures = work.sheet.region_pressures();
+        for (region, pressure) in &mut world.resource_mut::<BubbleGas>().pressures {
+            *pressure = pressures.get(region).copied().unwrap_or(0.0);
+        }
+        Ok(())
+    });
+}
+
+/// Notes the impulse of every free cluster, to be restored when the mesh has changed.
+pub fn note_impulses(world: &mut World) {
+    with_work(world, Stage::Advance, |_, work, _| {
+        let SheetWork { sheet, state, kept_impulses, .. } = work;
+        let names = sheet.clusters.names(&sheet.layout).into_iter();
+        *kept_impulses = names.zip(sheet.impulses(&state.potentials)).collect();
+        Ok(())
+    });
 }
 
 /// Gives the bubbles back what remeshing took of their volumes and the clusters what it took of their impulse, or takes what it gave. It

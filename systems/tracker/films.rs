@@ -34,6 +34,13 @@ pub struct MeshRules {
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TopologyChanged(pub bool);
 
+impl TopologyChanged {
+    /// Whether it changed; from then on the method has looked.
+    pub fn taken(&mut self) -> bool {
+        std::mem::take(&mut self.0)
+    }
+}
+
 /// Takes the films out of the world as a surface; the resource is empty until [`put_back`].
 pub fn take(world: &mut World) -> Surface {
     let positions = read_column::<MeshVertex, Position>(world);

@@ -54,6 +54,8 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Dynamics, "circulation on wires carries films along", dynamics::carry_by_wires, wires);
     plan.add(Stage::Velocity, "Biot-Savart: from circulation to velocity", velocity::flow_by_biot_savart, left());
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, left());
+    plan.add(Stage::Advance, "pressure of every bubble", motion::fit_pressures, left());
+    plan.add(Stage::Advance, "note the impulse of every cluster", motion::note_impulses, remeshing().and(left()));
     plan.add(Stage::Topology, "burst films", bursting::burst_films, bursting());
     plan.add(Stage::Topology, "snap, split, collapse, flip, separate", remeshing::remesh, remeshing());
     plan.add(Stage::Topology, "gas follows the bubbles", gas::follow_bubbles, always());

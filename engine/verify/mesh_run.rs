@@ -3,6 +3,7 @@
 use froth_components::kind::MeshVertex;
 use froth_components::motion::{Pinned, Position};
 use froth_surface::invariants::{Violation, check_all};
+use froth_surface::links::free_clusters;
 use froth_surface::{EventKind, Face, Region, Surface, SurfaceMesh};
 use froth_systems::tracker::events::{StepEvents, TopologyEvent};
 use froth_systems::tracker::films::{OpenRegions, surface_of};
@@ -102,21 +103,9 @@ impl MeshRun {
     /// Number of films, or clusters of films, that are apart from each other.
     pub(super) fn films(&mut self) -> usize {
         let surface = self.surface();
-        let mut names: Vec<usize> = (0..surface.positions.len()).collect();
-        let films = || surface.mesh.faces().filter(|(_, face)| !face.is_ghost()).map(|(_, face)| face.vertices());
-        let mut changes = true;
-        while changes {
-            changes = false;
-            for corners in films() {
-                let least = corners.map(|v| names[v.index()]).into_iter().min().unwrap_or(0);
-                changes |= corners.iter().any(|v| names[v.index()] != least);
-                corners.iter().for_each(|v| names[v.index()] = least);
-            }
-        }
-        let mut films: Vec<usize> = films().map(|corners| names[corners[0].index()]).collect();
-        films.sort_unstable();
-        films.dedup();
-        films.len()
+        let films = surface.mesh.faces().map(|(_, face)| face).filter(|face| !face.is_ghost());
+        let corners: Vec<[u32; 3]> = films.map(|face| face.vertices().map(|v| v.0)).collect();
+        free_clusters(surface.positions.len(), corners.into_iter(), |_| false).count
     }
 
     /// The first invariant of the tracker that does not hold.

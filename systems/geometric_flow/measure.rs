@@ -32,18 +32,19 @@ pub fn mass_of(rules: &FlowRules, liquid: &Liquid, area: Area, volume: LiquidVol
 pub fn measure_films(world: &mut World) {
     let mut surface = films::take(world);
     let mut work = std::mem::take(&mut *world.resource_mut::<FlowWork>());
-    if std::mem::replace(&mut world.resource_mut::<TopologyChanged>().0, false) {
-        rebuild(&mut work.flow, &mut surface, world.resource::<FlowRules>().keeps_volumes);
-    }
+    lay_out(world, &mut work.flow, &mut surface);
     let positions = surface.positions.0.clone();
     films::put_back(world, surface);
     shape::write(world, work.flow.incidence(), &positions);
     *world.resource_mut::<FlowWork>() = work;
 }
 
-/// Lists for the films as they are; where volumes are free, as if every region were open.
-pub(super) fn rebuild(flow: &mut Flow, surface: &mut Surface, keeps_volumes: bool) {
-    if keeps_volumes {
+/// Lists for the films as they are, if the mesh changed; where volumes are free, as if every region were open.
+pub(super) fn lay_out(world: &mut World, flow: &mut Flow, surface: &mut Surface) {
+    if !world.resource_mut::<TopologyChanged>().taken() {
+        return;
+    }
+    if world.resource::<FlowRules>().keeps_volumes {
         flow.rebuild(surface);
         return;
     }

@@ -18,7 +18,7 @@ use froth_surface::{PerVertex, Surface};
 use glam::DVec3;
 use thiserror::Error;
 
-use super::measure::{FlowWork, mass_of};
+use super::measure::{FlowWork, lay_out, mass_of};
 use super::settings::FlowRules;
 use crate::bubbles::gas::BubbleGas;
 use crate::observe::{Fault, Faults};
@@ -157,8 +157,7 @@ pub fn restore_volumes(world: &mut World) {
     let (settings, edge) = (world.resource::<FlowRules>().settings, world.resource::<MeshRules>().policy.edge);
     // Errors are the next step's to report, which has the time to go far: here nothing has moved yet.
     let _ = with_flow(world, |world, surface, flow, state| {
-        flow.rebuild(surface);
-        world.resource_mut::<TopologyChanged>().0 = false;
+        lay_out(world, flow, surface);
         flow.restore_volumes(surface, state, &settings)?;
         let wanted = &flow.proposal().positions.0;
         if longest_way(surface, flow) < LONGEST_WAY * edge {

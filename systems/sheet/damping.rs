@@ -6,21 +6,24 @@
 //! A mode of degree `l` on a sphere decays as `exp(-D l (l + 1) t / (2 R^2))` in amplitude.
 //!
 //! # Discretisation
-//! Cotangent stiffness `K`, lumped areas `A`, one implicit step: `(A + D dt K) phi' = A phi`, solved by conjugate gradients
-//! preconditioned by the diagonal. Slivers, which would make explicit steps endlessly short, cost an iteration or two.
-//! First order in `dt`: a mode fades by `1 / (1 + r dt)` per step for `exp(-r dt)`.
+//! Cotangent stiffness `K`, lumped areas `A`, one implicit step: `(A + D dt K) phi' = A phi`, solved by
+//! [conjugate gradients](crate::conjugate_gradient) preconditioned by the diagonal. Slivers, which would make explicit steps
+//! endlessly short, cost an iteration or two. First order in `dt`: a mode fades by `1 / (1 + r dt)` per step for `exp(-r dt)`.
 
 use froth_surface::calculus::stiffness::half_cotangents;
 use glam::DVec3;
 
 use crate::SheetError;
+use crate::conjugate_gradient::{self, StopRule, System, Workspace};
 use crate::geometry::corners;
 use crate::layout::Layout;
 
-/// Residual over right-hand side at which the solve ends, in the norm `sqrt(r . r / diagonal)`.
-const TOLERANCE: f64 = 1e-12;
-/// Iterations after which something else is wrong.
-const MOST_ITERATIONS: u32 = 2000;
+/// When the solve ends; the residual is measured by `sqrt(r . r / diagonal)` against `sqrt(phi . A phi)`.
+const STOP: StopRule = StopRule {
+    tolerance: 1e-12,
+    max_iterations: 2000,
+    refusal: |iterations, residual| SheetError::DampingNotSolved { iterations, residual },
+};
 
 /// Work space of the diffusion.
 #[derive(Clone, Debug, Default)]
@@ -28,9 +31,7 @@ pub struct Damping {
     weights: Vec<[f64; 3]>,
     areas: Vec<f64>,
     inverse: Vec<f64>,
-    residual: Vec<f64>,
-    direction: Vec<f64>,
-    image: Vec<f64>,
+    work: Workspace,
 }
 
 impl Damping {
@@ -77,35 +78,21 @@ impl Damping {
 
     /// Solves for the change of the potentials: right-hand side `-D dt K phi`.
     fn solve(&mut self, layout: &Layout, potentials: &mut [f64]) -> Result<(), SheetError> {
-        let Self { weights, areas, inverse, residual, direction, image } = self;
-        residual.clear();
-        residual.resize(potentials.len(), 0.0);
-        add_stiffness(layout, weights, potentials, residual);
-        residual.iter_mut().for_each(|r| *r = -*r);
-        direction.clear();
-        direction.extend(residual.iter().zip(inverse.iter()).map(|(r, inverse)| r * inverse));
-        let norm = |r: &[f64]| r.iter().zip(inverse.iter()).map(|(r, inverse)| r * r * inverse).sum::<f64>();
+        let Self { weights, areas, inverse, work } = self;
+        work.residual.clear();
+        work.residual.resize(potentials.len(), 0.0);
+        add_stiffness(layout, weights, potentials, &mut work.residual);
+        work.residual.iter_mut().for_each(|r| *r = -*r);
         // Against the potentials themselves: a sheet without gradients has nothing to solve.
-        let size = |x: &[f64]| x.iter().zip(areas.iter()).map(|(x, area)| x * x * area).sum::<f64>();
-        let enough = TOLERANCE * TOLERANCE * size(potentials);
-        let mut rho = norm(residual);
-        for _ in 0..MOST_ITERATIONS {
-            if rho <= enough {
-                return Ok(());
-            }
+        let whole = potentials.iter().zip(areas.iter()).map(|(x, area)| x * x * area).sum::<f64>();
+        let product = |x: &[f64], image: &mut Vec<f64>| {
             image.clear();
-            image.extend(direction.iter().zip(areas.iter()).map(|(d, area)| d * area));
-            add_stiffness(layout, weights, direction, image);
-            let alpha = rho / direction.iter().zip(image.iter()).map(|(d, image)| d * image).sum::<f64>();
-            potentials.iter_mut().zip(direction.iter()).for_each(|(x, d)| *x += alpha * d);
-            residual.iter_mut().zip(image.iter()).for_each(|(r, image)| *r -= alpha * image);
-            let next = norm(residual);
-            for ((d, r), inverse) in direction.iter_mut().zip(residual.iter()).zip(inverse.iter()) {
-                *d = r * inverse + next / rho * *d;
-            }
-            rho = next;
-        }
-        Err(SheetError::DampingNotSolved { iterations: MOST_ITERATIONS, residual: (rho / size(potentials)).sqrt() })
+            image.extend(x.iter().zip(areas.iter()).map(|(x, area)| x * area));
+            add_stiffness(layout, weights, x, image);
+            Ok(())
+        };
+        conjugate_gradient::solve(System { product, inverse, whole }, STOP, potentials, work)?;
+        Ok(())
     }
 }
 

@@ -8,7 +8,6 @@
 //! `M_v` has rank 1 on a film, 2 on a Plateau border, 3 where borders meet; eigenvalues below [`RANK_CUT`] of the largest are
 //! dropped, so that nearly flat borders count as films.
 
-use froth_surface::rows::VertexRow;
 use glam::{DMat3, DVec3};
 
 use crate::layout::{Layout, Panel};
@@ -68,12 +67,6 @@ impl Geometry {
         self.areas.resize(layout.vertex_rows(), 0.0);
         self.middles.clear();
         self.middles.resize(layout.vertex_rows(), DVec3::ZERO);
-    }
-
-    /// Unit normal of a vertex out of its region of the highest label; zero where there is no film.
-    #[must_use]
-    pub fn normal(&self, layout: &Layout, vertex: VertexRow) -> DVec3 {
-        layout.sides_of(vertex.index()).last().map_or(DVec3::ZERO, |side| self.gradients[side].normalize_or_zero())
     }
 }
 

@@ -10,6 +10,7 @@
 //! # Source
 //! Saffman 1992, §3.2, for the impulse; the correction is this scheme's own.
 
+use froth_surface::links::{FilmClusters, free_clusters};
 use froth_surface::{Region, Surface};
 use glam::{DMat3, DVec3};
 
@@ -17,61 +18,34 @@ use crate::geometry::Geometry;
 use crate::layout::Layout;
 use crate::symmetric::outer;
 
-/// Pieces of film that hang together, and which of them are free.
+/// Clusters of films that nothing holds.
 #[derive(Clone, Debug, Default)]
-pub struct Clusters {
-    /// Cluster of each vertex; `None` where there is no film, or a cluster that is held.
-    of_vertex: Vec<Option<u32>>,
-    count: usize,
-}
+pub struct Clusters(FilmClusters);
 
 impl Clusters {
     /// Finds the clusters of a surface.
     #[must_use]
     pub fn new(layout: &Layout, surface: &Surface) -> Self {
-        let mut roots: Vec<u32> = (0..layout.vertex_rows() as u32).collect();
-        for panel in layout.panels() {
-            let [a, b, c] = panel.corners.map(|v| root(&mut roots, v));
-            let least = a.min(b).min(c);
-            [a, b, c].into_iter().for_each(|v| roots[v as usize] = least);
-        }
-        let mut is_free = vec![true; roots.len()];
-        for v in 0..roots.len() as u32 {
-            let is_held = surface.pinned.0[v as usize] || has_open_side(layout, surface, v as usize);
-            let root = root(&mut roots, v);
-            is_free[root as usize] &= !is_held;
-        }
-        let mut names = vec![None; roots.len()];
-        let mut clusters = Self::default();
-        for v in 0..roots.len() {
-            let root = root(&mut roots, v as u32) as usize;
-            let is_film = !layout.sides_of(v).is_empty() && is_free[root];
-            clusters.of_vertex.push(is_film.then(|| {
-                *names[root].get_or_insert_with(|| {
-                    clusters.count += 1;
-                    clusters.count as u32 - 1
-                })
-            }));
-        }
-        clusters
+        let is_held = |v: usize| surface.pinned.0[v] || has_open_side(layout, surface, v);
+        Self(free_clusters(layout.vertex_rows(), layout.panels().iter().map(|panel| panel.corners), is_held))
     }
 
     /// Free clusters.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.count
+        self.0.count
     }
 
     /// Whether no cluster is free.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.count == 0
+        self.0.count == 0
     }
 
     /// What each free cluster is known by when the mesh has changed: its bubble of the least label, or the outside where it has none.
     #[must_use]
     pub fn names(&self, layout: &Layout) -> Vec<Region> {
-        let mut names = vec![Region::OUTSIDE; self.count];
+        let mut names = vec![Region::OUTSIDE; self.0.count];
         self.for_each_side(layout, |cluster, _, side| {
             let region = layout.regions()[side];
             if is_of_bubble(layout, side) && (names[cluster] == Region::OUTSIDE || region < names[cluster]) {
@@ -84,7 +58,7 @@ impl Clusters {
     /// Impulse per density of each free cluster, m^4/s.
     #[must_use]
     pub fn impulses(&self, layout: &Layout, geometry: &Geometry, potentials: &[f64]) -> Vec<DVec3> {
-        let mut impulses = vec![DVec3::ZERO; self.count];
+        let mut impulses = vec![DVec3::ZERO; self.0.count];
         self.for_each_side(layout, |cluster, _, side| {
             impulses[cluster] += geometry.gradients[side] * potentials[side];
         });
@@ -94,8 +68,8 @@ impl Clusters {
     /// Sums of forces per vertex over each free cluster.
     #[must_use]
     pub fn sums(&self, forces: &[DVec3]) -> Vec<DVec3> {
-        let mut sums = vec![DVec3::ZERO; self.count];
-        for (force, cluster) in forces.iter().zip(&self.of_vertex) {
+        let mut sums = vec![DVec3::ZERO; self.0.count];
+        for (force, cluster) in forces.iter().zip(&self.0.of_vertex) {
             if let Some(cluster) = cluster {
                 sums[*cluster as usize] += *force;
             }
@@ -112,10 +86,10 @@ impl Clusters {
         wanted: &[DVec3],
         potentials: &mut [f64],
     ) -> f64 {
-        let mut matrices = vec![DMat3::ZERO; self.count];
+        let mut matrices = vec![DMat3::ZERO; self.0.count];
         let mut lacks: Vec<DVec3> = wanted.iter().map(|wanted| -*wanted).collect();
         // Places from one of the cluster's own: far from the origin sums would lose digits.
-        let mut origins = vec![None; self.count];
+        let mut origins = vec![None; self.0.count];
         self.for_each_side(layout, |cluster, v, side| {
             let origin = *origins[cluster].get_or_insert(positions[v]);
             let n = geometry.gradients[side];
@@ -140,7 +114,7 @@ impl Clusters {
 
     /// Calls `visit(cluster, vertex, side)` for the sides of free clusters.
     fn for_each_side(&self, layout: &Layout, mut visit: impl FnMut(usize, usize, usize)) {
-        for (v, cluster) in self.of_vertex.iter().enumerate() {
+        for (v, cluster) in self.0.of_vertex.iter().enumerate() {
             let Some(cluster) = cluster else { continue };
             layout.sides_of(v).for_each(|side| visit(*cluster as usize, v, side));
         }
@@ -154,13 +128,4 @@ fn is_of_bubble(layout: &Layout, side: usize) -> bool {
 fn has_open_side(layout: &Layout, surface: &Surface, vertex: usize) -> bool {
     let regions = layout.sides_of(vertex).map(|side| layout.regions()[side]);
     regions.into_iter().any(|region| region != Region::OUTSIDE && surface.is_open(region))
-}
-
-fn root(roots: &mut [u32], v: u32) -> u32 {
-    let mut at = v;
-    while roots[at as usize] != at {
-        roots[at as usize] = roots[roots[at as usize] as usize];
-        at = roots[at as usize];
-    }
-    at
 }

@@ -170,11 +170,6 @@ impl Layout {
         Self { panels, ..self.clone() }
     }
 
-    /// Sides that ghosts join, vertex by vertex.
-    pub fn ties(&self) -> impl Iterator<Item = &[u32]> {
-        self.ties.iter().map(SmallVec::as_slice)
-    }
-
     /// Whether the potential is continuous around a vertex: the rim of an open film.
     #[must_use]
     pub fn is_rim(&self, vertex: usize) -> bool {

@@ -13,6 +13,7 @@
 //! | from potentials to motion | [`flow`] (with [`froth_biot_savart`]), [`sliding`] |
 //! | from forces to potentials | [`tension`], [`convection`], [`damping`] |
 //! | what holds | [`wires`], [`impulse`] |
+//! | how linear systems are solved | [`conjugate_gradient`] |
 //! | all of it in order | [`sheet`], [`integration`], [`step_length`] |
 //!
 //! # Source
@@ -20,6 +21,7 @@
 //! and foams*. The default discretisation is a variational one: fluxes through vertex shares instead of velocities at points. The
 //! paper's own is there for comparison.
 
+pub mod conjugate_gradient;
 pub mod convection;
 pub mod damping;
 pub mod discretisation;

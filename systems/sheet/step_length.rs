@@ -10,12 +10,17 @@ use glam::DVec3;
 use crate::geometry::{corners, edges};
 use crate::layout::Layout;
 
-/// `sqrt(rho h^3 / sigma)` of the shortest edge of all films, s; `tension` is that of a film, `2 sigma`, N/m. Infinite without films.
+/// `sqrt(rho h^3 / sigma)` of an edge of `edge` metres, s; `density` in kg/m^3, `surface_tension` in N/m.
 #[must_use]
-pub fn capillary_time(layout: &Layout, positions: &[DVec3], density: f64, tension: f64) -> f64 {
+pub fn capillary_time(edge: f64, density: f64, surface_tension: f64) -> f64 {
+    (density * edge.powi(3) / surface_tension).sqrt()
+}
+
+/// The shortest edge of all films, metres; infinite without films.
+#[must_use]
+pub fn shortest_edge(layout: &Layout, positions: &[DVec3]) -> f64 {
     let lengths = layout.panels().iter().flat_map(|panel| edges(corners(panel, positions)));
-    let shortest = lengths.map(DVec3::length_squared).fold(f64::INFINITY, f64::min).sqrt();
-    (density * shortest.powi(3) / (0.5 * tension)).sqrt()
+    lengths.map(DVec3::length_squared).fold(f64::INFINITY, f64::min).sqrt()
 }
 
 /// Part of the smoothing length below which edges do not shorten steps: half an edge at the usual `alpha` of 0.75 edges.

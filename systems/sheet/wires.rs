@@ -3,7 +3,8 @@
 //! # Equation
 //! At a held vertex with velocity `u` the fluxes are given: `F_iv = N_iv . u` for each region there. Unknown are the differences of the
 //! potentials, one fewer than there are regions (regions that ghosts join count once). The matrix is the wire's block of
-//! `dF/dphi`, symmetric and positive definite: conjugate gradients converge in about ten iterations, and nothing is regularised.
+//! `dF/dphi`, symmetric and positive definite: [conjugate gradients](crate::conjugate_gradient) converge in about
+//! ten iterations, and nothing is regularised.
 //! On the rim of an open film there is one region and nothing to solve: the potential is continuous round the wire.
 //!
 //! # Discretisation
@@ -18,23 +19,20 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::SheetError;
+use crate::conjugate_gradient::{self, SolveInfo, StopRule, System, Workspace};
 use crate::flow;
 use crate::geometry::Geometry;
 use crate::layout::Layout;
 
-/// When the solve ends.
-const TOLERANCE: f64 = 1e-10;
-/// Iterations after which something else is wrong.
-const MOST_ITERATIONS: u32 = 200;
+/// When the solve ends; the residual is measured against the right-hand side.
+const STOP: StopRule = StopRule {
+    tolerance: 1e-10,
+    max_iterations: 200,
+    refusal: |iterations, residual| SheetError::WireNotSolved { iterations, residual },
+};
 
-/// What a solve took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WireSolve {
-    /// Iterations of conjugate gradients.
-    pub iterations: u32,
-    /// Residual over right-hand side, dimensionless.
-    pub residual: f64,
-}
+/// What a solve took; its residual is over the right-hand side.
+pub type WireSolve = SolveInfo;
 
 /// An unknown: the potential that some sides of one vertex have in common, relative to the vertex's first group of sides.
 pub(crate) type Unknown = SmallVec<[u32; 4]>;
@@ -119,7 +117,12 @@ impl Wires {
             };
             *lack = unknown.iter().map(wanted).sum::<f64>() - *lack;
         }
-        let (solution, info) = conjugate_gradients(&mut product, residual)?;
+        let (mut solution, inverse) = (vec![0.0; residual.len()], vec![1.0; residual.len()]);
+        let whole = residual.iter().map(|lack| lack * lack).sum::<f64>();
+        let mut work = Workspace::of(residual);
+        let system =
+            System { product: |x: &[f64], image: &mut Vec<f64>| product.times(x, image), inverse: &inverse, whole };
+        let info = conjugate_gradient::solve(system, STOP, &mut solution, &mut work)?;
         for (unknown, value) in self.unknowns.iter().zip(solution) {
             unknown.iter().for_each(|side| potentials[*side as usize] += value);
         }
@@ -163,7 +166,7 @@ impl<'a> Product<'a> {
         })
     }
 
-    fn times(&mut self, x: &[f64]) -> Result<Vec<f64>, SheetError> {
+    fn times(&mut self, x: &[f64], image: &mut Vec<f64>) -> Result<(), SheetError> {
         for (unknown, value) in self.wires.unknowns.iter().zip(x) {
             unknown.iter().for_each(|side| self.potentials[*side as usize] = *value);
         }
@@ -171,35 +174,7 @@ impl<'a> Product<'a> {
         flow::strengths(layout, self.positions, &self.potentials, &mut self.strengths);
         self.pairs.potentials(&self.strengths, &mut self.vector_potentials)?;
         flow::fluxes(layout, self.positions, &self.vector_potentials, &mut self.fluxes);
-        Ok(self.wires.gathered(&self.fluxes))
+        *image = self.wires.gathered(&self.fluxes);
+        Ok(())
     }
-}
-
-/// Solves `product x = b`.
-fn conjugate_gradients(product: &mut Product<'_>, b: Vec<f64>) -> Result<(Vec<f64>, WireSolve), SheetError> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (mut x, mut residual) = (vec![0.0; b.len()], b);
-    let mut direction = residual.clone();
-    let whole = dot(&residual, &residual);
-    let mut rho = whole;
-    let mut info = WireSolve::default();
-    while rho > TOLERANCE * TOLERANCE * whole {
-        if info.iterations == MOST_ITERATIONS || !rho.is_finite() {
-            return Err(SheetError::WireNotSolved { iterations: info.iterations, residual: (rho / whole).sqrt() });
-        }
-        let image = product.times(&direction)?;
-        let alpha = rho / dot(&direction, &image);
-        for i in 0..x.len() {
-            x[i] += alpha * direction[i];
-            residual[i] -= alpha * image[i];
-        }
-        let next = dot(&residual, &residual);
-        for i in 0..x.len() {
-            direction[i] = residual[i] + next / rho * direction[i];
-        }
-        rho = next;
-        info.iterations += 1;
-    }
-    info.residual = if whole > 0.0 { (rho / whole).sqrt() } else { 0.0 };
-    Ok((x, info))
 }

@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use crate::links::Links;
 use crate::rows::{FaceRow, Region};
 use crate::sectors::facing_sides;
 use crate::surface::Surface;
@@ -133,29 +134,4 @@ fn is_inside(surface: &Surface, hole: &Shell, body: &Shell) -> bool {
         if *is_front { -angle } else { angle }
     };
     body.sides.iter().map(solid_angle).sum::<f64>() > std::f64::consts::TAU
-}
-
-/// Union-find over many things.
-struct Links {
-    parent: Vec<u32>,
-}
-
-impl Links {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&mut self, of: usize) -> usize {
-        let mut at = of;
-        while self.parent[at] as usize != at {
-            self.parent[at] = self.parent[self.parent[at] as usize];
-            at = self.parent[at] as usize;
-        }
-        at
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b) as u32;
-    }
 }

@@ -7,7 +7,7 @@
 //! | which angles are the film's own | [`corners`] |
 //! | what must hold | [`invariants`], [`fault`] |
 //! | what is near, what crosses, when do two things meet | [`kernel`], [`grid`] |
-//! | what meets at a vertex, what hangs together | [`sectors`], [`bodies`] |
+//! | what meets at a vertex, what hangs together | [`sectors`], [`bodies`], [`links`] |
 //! | how does the mesh change | [`operations`], [`remesh`], [`policy`], [`event`] |
 //! | what becomes of data on vertices | [`transfer`] |
 //! | how does it move | [`motion`], [`calculus`], [`flow`] |
@@ -22,6 +22,7 @@ pub mod flow;
 pub mod grid;
 pub mod invariants;
 pub mod kernel;
+pub mod links;
 pub mod mesh;
 pub mod motion;
 pub mod operations;

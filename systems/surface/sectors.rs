@@ -22,6 +22,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use smallvec::SmallVec;
 
+use crate::links::Links;
 use crate::mesh::{Face, SurfaceMesh};
 use crate::rows::{Region, VertexRow};
 
@@ -61,8 +62,8 @@ impl Sectors {
         if faces.len() > MOST_FACES {
             return Self::tangle(faces.len());
         }
-        let mut sides = Classes::new(2 * faces.len());
-        let mut link = Classes::new(faces.len());
+        let mut sides = Links::new(2 * faces.len());
+        let mut link = Links::new(faces.len());
         let (mut tangled, mut narrowest) = (false, f64::INFINITY);
         let mut nodes = 0;
         for (neighbour, around) in edges(vertex, faces) {
@@ -73,8 +74,8 @@ impl Sectors {
             tangled |= !facing.agree;
             narrowest = narrowest.min(facing.narrowest);
         }
-        let (class_of, classes) = sides.numbered();
-        let (component_of, components) = link.numbered();
+        let (class_of, classes) = numbered(sides);
+        let (component_of, components) = numbered(link);
         let mut regions: SmallVec<[Region; 8]> = SmallVec::from_elem(Region(u32::MAX), classes);
         for (side, class) in class_of.iter().enumerate() {
             let region = faces[side / 2].labels()[side % 2];
@@ -287,42 +288,9 @@ fn in_angular_order(
     (ordered.into_iter().map(|(_, place)| place).collect(), narrowest)
 }
 
-/// Union-find over a few things.
-struct Classes {
-    parent: SmallVec<[u16; 64]>,
-}
-
-impl Classes {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count).map(|i| i as u16).collect() }
-    }
-
-    fn root(&self, of: usize) -> usize {
-        let mut root = of;
-        while usize::from(self.parent[root]) != root {
-            root = usize::from(self.parent[root]);
-        }
-        root
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b) as u16;
-    }
-
-    /// Class of each thing, numbered in order of first appearance, and how many there are.
-    fn numbered<A: smallvec::Array<Item = u16>>(&self) -> (SmallVec<A>, usize) {
-        let mut number: SmallVec<[u16; 64]> = SmallVec::from_elem(u16::MAX, self.parent.len());
-        let mut count = 0;
-        let classes = (0..self.parent.len()).map(|i| {
-            let root = self.root(i);
-            if number[root] == u16::MAX {
-                number[root] = count;
-                count += 1;
-            }
-            number[root]
-        });
-        let classes: SmallVec<A> = classes.collect();
-        (classes, usize::from(count))
-    }
+/// Class of each thing, numbered in order of first appearance, and how many there are.
+fn numbered<A: smallvec::Array<Item = u16>>(mut links: Links) -> (SmallVec<A>, usize) {
+    let classes: SmallVec<A> = links.numbered(|_| true).flatten().map(|class| class as u16).collect();
+    let count = classes.iter().max().map_or(0, |last| usize::from(*last) + 1);
+    (classes, count)
 }

@@ -1,6 +1,5 @@
 //! The films of a world as one [`Surface`]: the mesh with the positions of its rows.
 
-use bevy_ecs::query::With;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 use froth_components::kind::MeshVertex;
@@ -35,6 +34,13 @@ pub struct MeshRules {
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TopologyChanged(pub bool);
 
+impl TopologyChanged {
+    /// Whether it changed; from then on the method has looked.
+    pub fn taken(&mut self) -> bool {
+        std::mem::take(&mut self.0)
+    }
+}
+
 /// Takes the films out of the world as a surface; the resource is empty until [`put_back`].
 pub fn take(world: &mut World) -> Surface {
     let positions = read_column::<MeshVertex, Position>(world);
@@ -61,9 +67,4 @@ pub fn put_back(world: &mut World, surface: Surface) {
     fill_column::<MeshVertex, _>(world, &positions);
     world.resource_mut::<OpenRegions>().0 = surface.open;
     *world.resource_mut::<SurfaceMesh>() = surface.mesh;
-}
-
-/// Number of mesh vertices.
-pub fn vertex_count(world: &mut World) -> usize {
-    world.query_filtered::<(), With<MeshVertex>>().iter(world).count()
 }

@@ -8,7 +8,8 @@
 //! | `Dynamics` | circulation on wires, so that films go with them | `dynamics` |
 //! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection | `velocity` |
 //! | `Deform` | integrator; volumes; films go there, as far as none touches another; damping; impulse | `motion` |
-//! | `Topology` | volumes after remeshing | `motion` |
+//! | `Advance` | pressure of every bubble, impulse of every cluster | `motion` |
+//! | `Topology` | volumes and impulses after remeshing | `motion` |
 //! | `Observe` | energies, circulations, how the step went | `observe` |
 //!
 //! `Geometry` to `Deform` are one evaluation; integrators that need several ask for another pass

@@ -10,6 +10,7 @@ use froth_surface::motion::{MotionSettings, advance};
 use froth_surface::{EventKind, Region, Surface};
 use glam::DVec3;
 
+use super::geometry::lay_out;
 use super::settings::SheetRules;
 use super::work::{SheetFault, SheetWork, Substep, forcing, with_work};
 use crate::bubbles::gas::BubbleGas;
@@ -85,7 +86,7 @@ fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mu
 /// The second kick, damping and impulse, where the films have come to.
 fn settle(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(), SheetFault> {
     let rules = *world.resource::<SheetRules>();
-    let SheetWork { sheet, state, heads, forces, impulses, kept_impulses, report, .. } = work;
+    let SheetWork { sheet, state, heads, forces, impulses, report, .. } = work;
     let forcing = forcing(world, forces);
     heads.clone_from(&sheet.heads);
     sheet.measure(&state.positions);
@@ -101,16 +102,30 @@ fn settle(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(
     let kept = (-rules.damping * substep.length).exp();
     state.potentials.iter_mut().for_each(|phi| *phi *= kept);
     centre(&sheet.layout, &mut state.potentials);
-    let names = sheet.clusters.names(&sheet.layout).into_iter();
-    *kept_impulses = names.zip(sheet.impulses(&state.potentials)).collect();
-    let pressures = sheet.region_pressures();
-    let mut gas = world.resource_mut::<BubbleGas>();
-    for (region, pressure) in &mut gas.pressures {
-        *pressure = pressures.get(region).copied().unwrap_or(0.0);
-    }
     let potentials = Potentials::scattered(&sheet.layout, &state.potentials, heads);
     *world.resource_mut::<Potentials>() = potentials;
     Ok(())
+}
+
+/// Fits one pressure per bubble to those that the films show where the step has taken them.
+pub fn fit_pressures(world: &mut World) {
+    with_work(world, Stage::Advance, |world, work, _| {
+        let pressures = work.sheet.region_pressures();
+        for (region, pressure) in &mut world.resource_mut::<BubbleGas>().pressures {
+            *pressure = pressures.get(region).copied().unwrap_or(0.0);
+        }
+        Ok(())
+    });
+}
+
+/// Notes the impulse of every free cluster, to be restored when the mesh has changed.
+pub fn note_impulses(world: &mut World) {
+    with_work(world, Stage::Advance, |_, work, _| {
+        let SheetWork { sheet, state, kept_impulses, .. } = work;
+        let names = sheet.clusters.names(&sheet.layout).into_iter();
+        *kept_impulses = names.zip(sheet.impulses(&state.potentials)).collect();
+        Ok(())
+    });
 }
 
 /// Gives the bubbles back what remeshing took of their volumes and the clusters what it took of their impulse, or takes what it gave. It
@@ -123,26 +138,25 @@ pub fn restore_volumes(world: &mut World) {
     }
     with_work(world, Stage::Topology, |world, work, _| {
         let edge = world.resource::<MeshRules>().policy.edge;
-        let mut surface = films::take(world);
-        world.resource_mut::<TopologyChanged>().0 = false;
-        work.sheet.rebuild(&surface);
-        work.sheet.measure(&surface.positions);
-        let mut wanted = surface.positions.0.clone();
+        lay_out(world, work);
+        work.sheet.measure(&work.state.positions);
+        let mut wanted = work.state.positions.clone();
         // Errors are the next step's to report: here nothing has moved yet.
         let way = work.sheet.meet_volumes(&mut wanted, &world.resource::<BubbleGas>().targets);
         if way.is_ok_and(|way| way < LONGEST_WAY * edge) {
+            let mut surface = films::take(world);
             // A vertex that is held up here is settled by the next step.
             let _ = advance(&mut surface, &wanted, &MotionSettings::new(edge));
+            work.state.positions.clone_from(&surface.positions.0);
+            films::put_back(world, surface);
         }
-        let positions = surface.positions.0.clone();
-        films::put_back(world, surface);
-        restore_impulses(world, work, &positions);
+        restore_impulses(world, work);
         Ok(())
     });
 }
 
 /// Gives clusters that are the same as before remeshing the impulse that they had. A film that burst took its own along.
-fn restore_impulses(world: &mut World, work: &mut SheetWork, positions: &[DVec3]) {
+fn restore_impulses(world: &mut World, work: &mut SheetWork) {
     let SheetWork { sheet, state, heads, kept_impulses, report, .. } = work;
     let names = sheet.clusters.names(&sheet.layout);
     if names.len() != kept_impulses.len()
@@ -154,9 +168,8 @@ fn restore_impulses(world: &mut World, work: &mut SheetWork, positions: &[DVec3]
     let of =
         |name: &Region| kept_impulses.iter().find(|(kept, _)| is_alone || kept == name).map(|(_, impulse)| *impulse);
     let Some(wanted) = names.iter().map(of).collect::<Option<Vec<DVec3>>>() else { return };
-    sheet.measure(positions);
-    world.resource::<Potentials>().gather(&sheet.layout, &mut state.potentials, heads);
-    let correction = sheet.keep_impulse(positions, &wanted, &mut state.potentials);
+    sheet.measure(&state.positions);
+    let correction = sheet.keep_impulse(&state.positions, &wanted, &mut state.potentials);
     report.impulse_correction = report.impulse_correction.max(correction);
     *world.resource_mut::<Potentials>() = Potentials::scattered(&sheet.layout, &state.potentials, heads);
 }

@@ -8,7 +8,7 @@ use froth_components::clock::Clock;
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::{Position, Velocity};
-use froth_sheet::step_length::limiting_edge;
+use froth_sheet::step_length::{capillary_time, limiting_edge};
 use froth_surface::SurfaceMesh;
 
 use super::settings::SheetRules;
@@ -44,7 +44,7 @@ pub fn limit_step(
     });
     let shortest = sides.fold(f64::INFINITY, f64::min).sqrt();
     let shortest = limiting_edge(shortest, rules.kernel.smoothing_length);
-    let capillary = rules.courant * (rules.density * shortest.powi(3) / liquid.surface_tension).sqrt();
+    let capillary = rules.courant * capillary_time(shortest, rules.density, liquid.surface_tension);
     limits.propose_for_substeps("capillary waves", capillary, MOST_SUBSTEPS);
     let fastest = ordered_max(velocities.len(), 0.0, |v| velocities[v].0.length());
     limits.propose("cfl", rules.cfl * mesh.policy.edge / fastest);

@@ -4,6 +4,7 @@ use bevy_ecs::world::World;
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::Velocity;
+use froth_sheet::step_length::capillary_time;
 
 use super::settings::SheetRules;
 use super::work::{SheetWork, with_work};
@@ -16,7 +17,7 @@ use crate::tracker::films::MeshRules;
 /// Short edges make substeps short; vertices that slid as far in each of those would race along the films.
 fn sliding_interval(world: &World) -> f64 {
     let (rules, edge) = (world.resource::<SheetRules>(), world.resource::<MeshRules>().policy.edge);
-    rules.courant * (rules.density * edge.powi(3) / world.resource::<Liquid>().surface_tension).sqrt()
+    rules.courant * capillary_time(edge, rules.density, world.resource::<Liquid>().surface_tension)
 }
 
 /// Works out sheet strengths, vector potentials, fluxes and velocities, and what convection does to the potentials.

@@ -36,7 +36,7 @@ pub struct SheetWork {
     pub forces: Vec<DVec3>,
     /// Impulse per density of the free clusters at the start of the substep, m^4/s.
     pub impulses: Vec<DVec3>,
-    /// Name and impulse per density of each free cluster where the last substep left it, m^4/s.
+    /// Name and impulse per density of each free cluster where the step's motion left it, m^4/s.
     pub kept_impulses: Vec<(Region, DVec3)>,
     /// What the step measured so far.
     pub report: StepReport,

@@ -27,12 +27,6 @@ pub(crate) fn double_area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Area of every film in the order of [`Incidence::films`], m^2.
-pub fn film_areas(incidence: &Incidence, positions: &[DVec3], areas: &mut Vec<f64>) {
-    areas.clear();
-    areas.extend(incidence.films().iter().map(|film| area(film.corners, positions)));
-}
-
 fn area(corners: [u32; 3], positions: &[DVec3]) -> f64 {
     0.5 * double_area_normal(corners_of(corners, positions)).length()
 }

@@ -9,7 +9,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::calculus::Incidence;
-use crate::calculus::incidence::NONE;
+use crate::links::free_clusters;
 
 /// A cluster of films that nothing holds.
 #[derive(Clone, Copy, Debug)]
@@ -52,46 +52,26 @@ impl Cluster {
 /// Free clusters of a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct FreeClusters {
-    /// Per vertex, its cluster, or [`NONE`].
-    cluster_of: Vec<u32>,
+    /// Per vertex, its cluster if it has one.
+    cluster_of: Vec<Option<u32>>,
     clusters: Vec<Cluster>,
 }
 
 impl FreeClusters {
     /// Finds them: sets of vertices that films connect, none of them held.
     pub fn rebuild(&mut self, incidence: &Incidence, pinned: &[bool]) {
-        let rows = incidence.vertex_rows() as u32;
-        let mut parent: Vec<u32> = (0..rows).collect();
-        for film in incidence.films() {
-            let roots = film.corners.map(|v| root(&mut parent, v));
-            let least = roots[0].min(roots[1]).min(roots[2]);
-            roots.into_iter().for_each(|r| parent[r as usize] = least);
-        }
-        let mut is_free = vec![false; rows as usize];
-        for film in incidence.films() {
-            is_free[root(&mut parent, film.corners[0]) as usize] = true;
-        }
-        for v in (0..rows).filter(|v| pinned[*v as usize]) {
-            is_free[root(&mut parent, v) as usize] = false;
-        }
+        let corners = incidence.films().iter().map(|film| film.corners);
+        let free = free_clusters(incidence.vertex_rows(), corners, |v| pinned[v]);
         self.clusters.clear();
-        self.cluster_of.clear();
-        let mut number = vec![NONE; rows as usize];
-        for v in 0..rows {
-            let root = root(&mut parent, v) as usize;
-            if is_free[root] && number[root] == NONE {
-                number[root] = self.clusters.len() as u32;
-                self.clusters.push(Cluster::EMPTY);
-            }
-            self.cluster_of.push(number[root]);
-        }
+        self.clusters.resize(free.count, Cluster::EMPTY);
+        self.cluster_of = free.of_vertex;
     }
 
     /// Spreads over the clusters what is in `removed` (N per vertex), weighted by `metric`.
     pub fn give_back(&mut self, positions: &[DVec3], metric: &[f64], removed: &[DVec3], forces: &mut [DVec3]) {
         self.clusters.fill(Cluster::EMPTY);
-        for (v, cluster) in self.cluster_of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE) {
-            let cluster = &mut self.clusters[*cluster as usize];
+        for (v, cluster) in members(&self.cluster_of) {
+            let cluster = &mut self.clusters[cluster];
             cluster.weight += metric[v];
             cluster.centre += positions[v] * metric[v];
             cluster.force += removed[v];
@@ -99,31 +79,28 @@ impl FreeClusters {
         for cluster in self.clusters.iter_mut().filter(|cluster| cluster.weight > 0.0) {
             cluster.centre /= cluster.weight;
         }
-        for (v, cluster) in self.cluster_of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE) {
-            let cluster = &mut self.clusters[*cluster as usize];
+        for (v, cluster) in members(&self.cluster_of) {
+            let cluster = &mut self.clusters[cluster];
             let arm = positions[v] - cluster.centre;
             cluster.inertia += inertia(arm) * metric[v];
             cluster.torque += arm.cross(removed[v]);
         }
         self.clusters.iter_mut().for_each(Cluster::settle);
-        for (v, cluster) in self.cluster_of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE) {
-            forces[v] += self.clusters[*cluster as usize].acceleration(positions[v]) * metric[v];
+        for (v, cluster) in members(&self.cluster_of) {
+            forces[v] += self.clusters[cluster].acceleration(positions[v]) * metric[v];
         }
     }
+}
+
+/// Vertices of clusters, each with its cluster.
+fn members(cluster_of: &[Option<u32>]) -> impl Iterator<Item = (usize, usize)> {
+    cluster_of.iter().enumerate().filter_map(|(v, cluster)| Some((v, (*cluster)? as usize)))
 }
 
 /// Inertia of a unit weight at the end of an arm.
 fn inertia(arm: DVec3) -> DMat3 {
     let outer = DMat3::from_cols(arm * arm.x, arm * arm.y, arm * arm.z);
     DMat3::IDENTITY * arm.length_squared() - outer
-}
-
-fn root(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        parent[v as usize] = parent[parent[v as usize] as usize];
-        v = parent[v as usize];
-    }
-    v
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use froth_biot_savart::{SheetKernel, Summation};
 use froth_sheet::potentials::centre;
+use froth_sheet::step_length::{capillary_time, shortest_edge};
 use froth_sheet::{Discretisation, Forcing, Integration, Integrator, Next, Rates, Sheet, SheetState, Sliding};
 use froth_surface::calculus::Weights;
 use froth_surface::{LabelledTriangles, Region, Surface};
@@ -212,7 +213,7 @@ impl Film {
     /// `C` times the capillary time of the shortest edge, s.
     pub fn capillary_step(&self, courant: f64) -> f64 {
         let Settings { density, tension, .. } = self.settings;
-        courant * froth_sheet::step_length::capillary_time(&self.sheet.layout, &self.state.positions, density, tension)
+        courant * capillary_time(shortest_edge(&self.sheet.layout, &self.state.positions), density, 0.5 * tension)
     }
 
     /// Steps of at most `courant` capillary times until `end` (s); calls `look` after every `stride`-th.

@@ -1,12 +1,15 @@
 //! Geometric flow as a user meets it: columns of one's own, events, liquid, wires, and faults.
 
 use bevy_ecs::system::{Query, ResMut};
+use bevy_ecs::world::World;
 use bevy_ecs::{query::With, resource::Resource};
 use froth::Simulation;
+use froth::simulation::BuildError;
 use froth_components::columns;
 use froth_components::film::{LiquidVolume, Thickness};
 use froth_components::kind::MeshVertex;
 use froth_components::motion::{ExternalAcceleration, Pinned, Position};
+use froth_surface::corners::LeastAngles;
 use froth_surface::invariants::check_all;
 use froth_systems::plan::Requires;
 use froth_systems::stage::Stage;
@@ -166,4 +169,73 @@ fn the_cell_in_the_middle_of_kelvins_foam_bends_its_walls_below_their_flat_area(
     // Below Kelvin's foam without end, 5.306, as neighbours give way; then the skin squeezes it.
     assert!((5.298..5.304).contains(&least), "{quotients:?}");
     assert!(*quotients.last().unwrap() > least + 0.002, "{quotients:?}");
+}
+
+/// Least angles of a run, degrees: those of films' own corners and of others, seen after every motion and after every remeshing.
+#[derive(Resource)]
+struct Least(LeastAngles);
+
+fn look_at_angles(world: &mut World) {
+    let surface = films::take(world);
+    let least = surface.mesh.faces().filter(|(_, face)| !face.is_ghost());
+    let least = least.fold(world.resource::<Least>().0, |least, (row, _)| least.with_face_of(&surface, row));
+    films::put_back(world, surface);
+    world.insert_resource(Least(least));
+}
+
+#[test]
+fn a_step_ends_early_where_faces_would_go_flat_and_the_next_goes_on() {
+    let bubbles =
+        r#"[ SphereLattice(radius: "5.3 cm", gap: "2.1 mm", counts: (2, 1, 1)), Film(thickness: Uniform("400 nm")) ]"#;
+    let mut foam = simulation(bubbles, "GeometricFlow(remesh: (snap: 0.49))");
+    (0..5).for_each(|_| _ = foam.step().unwrap());
+    foam.world_mut().insert_resource(Least(LeastAngles::NONE));
+    foam.add_system(Stage::Deform, "look at angles after motion", look_at_angles, Requires::nothing());
+    foam.add_system(Stage::Topology, "look at angles after remeshing", look_at_angles, Requires::nothing());
+    let (mut cut, mut steps, mut time) = (0, 0, foam.time());
+    while foam.time() < 0.5 {
+        let report = foam.step().unwrap();
+        assert_eq!((report.time, report.step_length), (foam.time(), foam.observables().get("step_length").unwrap()));
+        assert!(report.time > time && (report.time - time - report.step_length).abs() < 1e-12);
+        (cut, steps, time) = (cut + usize::from(report.limited_by == Some("shapes of faces")), steps + 1, report.time);
+    }
+    let least = foam.world().resource::<Least>().0;
+    let degrees = [least.own, least.rest].map(f64::to_degrees);
+    assert!(cut > 0 && degrees[1] > 20.0, "{cut} of {steps}: {degrees:?}");
+}
+
+#[test]
+fn a_bubble_that_is_not_there_cannot_burst() {
+    let scene = |regions: &str| {
+        let burst = format!(r#"{LATTICE}, [ Burst(every: "1 ms", order: Sequence({regions})) ]"#);
+        format!(
+            r#"Scene(title: "t", method: GeometricFlow(), resolution: Spacing("8 mm"), duration: "1 s", entities: [{burst}])"#
+        )
+    };
+    assert!(Simulation::from_scene_text(&scene("[8, 1]")).is_ok());
+    let Err(BuildError::Scene(error)) = Simulation::from_scene_text(&scene("[8, 9]")).map(|_| ()) else {
+        panic!("no error of the scene")
+    };
+    assert_eq!(error.stable_code(), "F0069");
+    assert!(error.to_string().contains("region 9 is to burst; the bubbles are 1 to 8"), "{error}");
+}
+
+#[test]
+fn a_bubble_is_rounder_where_new_vertices_go_to_the_smooth_film() {
+    let off_round = |placement: &str| {
+        let bubble = r#"[ Sphere(radius: "3 cm"), Film(thickness: Uniform("400 nm")), Volumes(of: ["500 ml"], within: "0.1 s") ]"#;
+        let mut bubble =
+            simulation(bubble, &format!("GeometricFlow(remesh: (smoothing: false, placement: {placement}))"));
+        let (before, mut farthest) = (bubble.column::<MeshVertex, Position>().len(), 0.0_f64);
+        while bubble.time() < 0.1 {
+            bubble.step().unwrap();
+            let distances: Vec<f64> = bubble.column::<MeshVertex, Position>().iter().map(|x| x.0.length()).collect();
+            let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+            farthest = distances.iter().map(|r| (r / mean - 1.0).abs()).fold(farthest, f64::max);
+        }
+        assert!(bubble.column::<MeshVertex, Position>().len() > before, "edges should have been split");
+        farthest
+    };
+    let (flat, round) = (off_round("Midpoint"), off_round("Butterfly"));
+    assert!(round < 0.8 * flat, "{round:e} {flat:e}");
 }

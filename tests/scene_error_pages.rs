@@ -8,8 +8,9 @@ use froth_components::authored::method::MethodName;
 const MEMORY: u64 = 8 << 30;
 
 /// Faults of a file or of a user's program, which no text shows, and of a mesh, which only making it shows.
-const WITHOUT_SCENES: [&str; 12] =
-    ["F0001", "F0002", "F0004", "F0005", "F0006", "F0036", "F0063", "F0064", "F0065", "F0066", "F0067", "F0068"];
+const WITHOUT_SCENES: [&str; 13] = [
+    "F0001", "F0002", "F0004", "F0005", "F0006", "F0036", "F0063", "F0064", "F0065", "F0066", "F0067", "F0068", "F0069",
+];
 
 /// What the command line does: read, check for the method, check as a whole.
 fn check(text: &str, option: Option<&str>) -> Result<(), SceneError> {

@@ -262,7 +262,7 @@ fn a_mesh_file_that_links_out_of_the_folder() {
 }
 
 #[test]
-fn a_fault_of_a_mesh_points_at_its_shape_or_wire() {
+fn a_fault_of_a_mesh_points_at_its_shape_wire_or_burst() {
     let scene = Scene::from_text("scene.ron", FOAM, &AuthoredRegistry::built_in()).unwrap();
     let kinds = [
         (MeshFaultKind::NotAMesh, 0, "F0062"),
@@ -271,6 +271,7 @@ fn a_fault_of_a_mesh_points_at_its_shape_or_wire() {
         (MeshFaultKind::Crossing, 0, "F0065"),
         (MeshFaultKind::WirePierces, 1, "F0066"),
         (MeshFaultKind::WireFar, 1, "F0067"),
+        (MeshFaultKind::Burst, 2, "F0069"),
     ];
     for (kind, entity, code) in kinds {
         let fault = MeshFault { entity: PlaceInScene(entity), kind, message: "vertex 3 is odd".to_owned() };

@@ -4,7 +4,6 @@ use bevy_ecs::world::World;
 use froth_components::authored::burst::Burst;
 use froth_components::authored::field::Gravity;
 use froth_components::authored::method::{GeometricFlowSettings, MethodChoice};
-use froth_components::authored::volumes::Volumes;
 use froth_components::authored::wire::Moves;
 use froth_components::kind::MeshVertex;
 use froth_components::material::Atmosphere;
@@ -14,8 +13,10 @@ use froth_systems::forces;
 use froth_systems::geometric_flow::measure::{self, FlowWork};
 use froth_systems::geometric_flow::motion::{self, FlowStep};
 use froth_systems::geometric_flow::settings::FlowRules;
+use froth_systems::geometric_flow::step_length::AskedLength;
 use froth_systems::geometric_flow::{observe, step_length};
 use froth_systems::plan::{Requires, SchedulePlan};
+use froth_systems::rows::state::StateRegistry;
 use froth_systems::stage::Stage;
 use froth_systems::tracker::films::MeshRules;
 use froth_systems::tracker::observe::observe_mesh;
@@ -48,11 +49,10 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Forces, "gravity", forces::pull_evenly_by_gravity::<MeshVertex>, gravity);
     let smoothing = Requires::that("a mesh that is smoothed (`smoothing`)", smooths_mesh);
     plan.add(Stage::Dynamics, "slide vertices along their films", remeshing::slide_mesh, smoothing);
-    let filling = Requires::component::<Volumes>("volumes that change");
-    plan.add(Stage::Dynamics, "let gas in and out of the bubbles", gas::fill_bubbles, filling);
     let moving = Requires::component::<Moves>("a wire or a rim that moves");
     plan.add(Stage::Dynamics, "note what holds which vertex", wires::note_pins, moving);
-    plan.add(Stage::Dynamics, "propose the films' motion (tension, volumes, wires)", motion::propose_motion, always());
+    let propose = "let gas in and out, propose the films' motion (tension, volumes, wires), end the step where faces would go flat";
+    plan.add(Stage::Dynamics, propose, motion::propose_motion, always());
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, always());
     plan.add(Stage::Topology, "burst films", bursting::burst_films, bursting());
     plan.add(Stage::Topology, "snap, split, collapse, flip, separate", remeshing::remesh, remeshing());
@@ -77,6 +77,8 @@ pub fn register(world: &mut World) {
     world.insert_resource(FlowRules::new(&authored, air, scale.size));
     world.init_resource::<FlowWork>();
     world.init_resource::<FlowStep>();
+    StateRegistry::register::<AskedLength>(world, "asked_length");
+    world.init_resource::<AskedLength>();
 }
 
 /// The scene's settings; the defaults where it is written for another method.

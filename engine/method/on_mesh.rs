@@ -3,7 +3,7 @@
 use bevy_ecs::world::World;
 use froth_components::authored::film::Film;
 use froth_components::authored::film_shape::FilmShape;
-use froth_components::authored::method::{Contact, Remesh};
+use froth_components::authored::method::{Contact, Placement, Remesh};
 use froth_components::authored::motion::Drift;
 use froth_components::authored::perturbation::{Bumps, HarmonicMode, Stretch};
 use froth_components::authored::volumes::Volumes;
@@ -23,7 +23,7 @@ use froth_systems::rows::state::StateRegistry;
 use froth_systems::rows::{fill_column, spawn_rows};
 use froth_systems::sampling::random::{self, Use};
 use froth_systems::sampling::surface::Perturbation;
-use froth_systems::tracker::bursting::BurstsDone;
+use froth_systems::tracker::bursting::{self, BurstsDone, UnknownBubble};
 use froth_systems::tracker::discretise::{AuthoredFilm, AuthoredWire, DiscreteFilms, FilmFault};
 use froth_systems::tracker::events::{self, StepEvents};
 use froth_systems::tracker::films::{MeshRules, OpenRegions, TopologyChanged, TrackerState};
@@ -123,6 +123,10 @@ fn insert_rules(world: &mut World, keep: &Remesh) -> Scale {
         },
         flips: keep.flips,
         separation: keep.topology,
+        placement: match keep.placement {
+            Placement::Midpoint => froth_surface::Placement::Midpoint,
+            Placement::Butterfly => froth_surface::Placement::Butterfly,
+        },
         ..Policy::new(edge)
     };
     let smoothing = if keep.smoothing { SMOOTHING } else { 0.0 };
@@ -135,11 +139,12 @@ fn insert_rules(world: &mut World, keep: &Remesh) -> Scale {
 /// Turns the authored films into one mesh.
 ///
 /// # Errors
-/// A [`FilmFault`].
+/// A [`FilmFault`]; bursts of bubbles that are not there.
 pub(super) fn discretise(world: &mut World) -> Result<(), DiscretiseError> {
     let (films, wires) = (authored_films(world), authored_wires(world));
     let edge = world.resource::<MeshRules>().policy.edge;
     let discrete = DiscreteFilms::sample(&films, &wires, edge).map_err(|fault| in_scene(&fault))?;
+    bursting::check_bursts(world, &discrete.surface).map_err(|unknown| burst_in_scene(&unknown))?;
     let areas = vertex_areas(&discrete.surface);
     let count = discrete.surface.positions.len();
     spawn_rows::<MeshVertex>(world, count);
@@ -179,6 +184,10 @@ fn in_scene(fault: &FilmFault) -> crate::scene::MeshFault {
         _ => MeshFaultKind::Faces,
     };
     crate::scene::MeshFault { entity: PlaceInScene(fault.place()), kind, message: fault.to_string() }
+}
+
+fn burst_in_scene(unknown: &UnknownBubble) -> crate::scene::MeshFault {
+    crate::scene::MeshFault { entity: unknown.place, kind: MeshFaultKind::Burst, message: unknown.to_string() }
 }
 
 /// A third of the film area around every vertex, m^2.

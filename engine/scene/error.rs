@@ -788,6 +788,25 @@ pub enum SceneError {
         #[label("has another number of bubbles")]
         at: SourceSpan,
     },
+
+    /// A burst of a bubble that is not there.
+    #[error("a bubble is to burst that is not there: {message}")]
+    #[diagnostic(
+        code(F0069),
+        help(
+            "write numbers of bubbles that the films enclose at the start; the outside and regions that no film closes cannot burst"
+        )
+    )]
+    UnknownBubble {
+        /// Which, and which there are.
+        message: String,
+        /// The file.
+        #[source_code]
+        file: SceneText,
+        /// The burst.
+        #[label("names a bubble that is not there")]
+        at: SourceSpan,
+    },
 }
 
 impl SceneError {

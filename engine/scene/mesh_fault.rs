@@ -24,14 +24,16 @@ pub enum MeshFaultKind {
     WireFar,
     /// Volumes for more or fewer bubbles than there are (`F0068`).
     Volumes,
+    /// A burst of a bubble that is not there (`F0069`).
+    Burst,
 }
 
-/// A fault of the films or the wire of one entity. As the error of a method's `discretise` it becomes a [`SceneError`] at the
+/// A fault of the films, the wire or the burst of one entity. As the error of a method's `discretise` it becomes a [`SceneError`] at the
 /// entity's place in the file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct MeshFault {
-    /// Whose films or wire.
+    /// Whose films, wire or burst.
     pub entity: PlaceInScene,
     /// What is wrong.
     pub kind: MeshFaultKind,
@@ -40,13 +42,15 @@ pub struct MeshFault {
 }
 
 impl Scene {
-    /// The error that points at the shape or the wire of the faulty entity.
+    /// The error that points at the shape, the wire or the burst of the faulty entity.
     #[must_use]
     pub fn explain(&self, fault: &MeshFault) -> SceneError {
         let entity = self.entities.get(fault.entity.0 as usize);
-        let on_wire = matches!(fault.kind, MeshFaultKind::WirePierces | MeshFaultKind::WireFar);
-        let range =
-            entity.map_or(0..0, |entity| if on_wire { entity.range_of(&["Wire"]) } else { entity.shape_range() });
+        let range = entity.map_or(0..0, |entity| match fault.kind {
+            MeshFaultKind::WirePierces | MeshFaultKind::WireFar => entity.range_of(&["Wire"]),
+            MeshFaultKind::Burst => entity.range_of(&["Burst"]),
+            _ => entity.shape_range(),
+        });
         let (message, file, at) = (fault.message.clone(), self.file.clone(), self.file.span(range));
         match fault.kind {
             MeshFaultKind::NotAMesh => SceneError::NotAMesh { message, file, at },
@@ -56,6 +60,7 @@ impl Scene {
             MeshFaultKind::WirePierces => SceneError::WirePierces { message, file, at },
             MeshFaultKind::WireFar => SceneError::WireFar { message, file, at },
             MeshFaultKind::Volumes => SceneError::VolumesMisfit { message, file, at },
+            MeshFaultKind::Burst => SceneError::UnknownBubble { message, file, at },
         }
     }
 }

@@ -4,9 +4,7 @@
 use std::collections::BTreeMap;
 
 use bevy_ecs::resource::Resource;
-use bevy_ecs::system::{Res, ResMut};
 use bevy_ecs::world::World;
-use froth_components::clock::Clock;
 use froth_components::gas::{GasPressure, GasVolume, ReferencePressure, ReferenceVolume};
 use froth_components::identity::{InRegion, RegionId};
 use froth_components::kind::{Kind, Region as RegionKind};
@@ -15,7 +13,6 @@ use froth_surface::bodies::Division;
 use froth_surface::{Region, Surface};
 use serde::{Deserialize, Serialize};
 
-use crate::clock::end_of_step;
 use crate::rows::fill_column;
 use crate::rows::registry::ColumnRegistry;
 use crate::tracker::films;
@@ -112,11 +109,6 @@ impl BubbleGas {
         let pressure = self.pressures.get(&division.from).copied().unwrap_or(0.0);
         self.pressures.insert(division.to, pressure);
     }
-}
-
-/// Gives the bubbles the volumes that they shall have at the end of the step.
-pub fn fill_bubbles(clock: Res<Clock>, mut gas: ResMut<BubbleGas>) {
-    gas.fill(clock.time, end_of_step(&clock));
 }
 
 /// The gas follows what the tracker did in this step.

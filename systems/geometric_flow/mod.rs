@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | `Clock` | no vertex crosses more than `cfl` edge lengths | `step_length` |
 //! | `Geometry` | areas, normals, curvature, thickness | `measure` |
-//! | `Dynamics` | where tension, pressure and external forces take the films | `motion` |
+//! | `Dynamics` | where tension, pressure and external forces take the films, for as long as faces keep their shapes | `motion` |
 //! | `Deform` | films go there, as far as none touches another | `motion` |
 //! | `Observe` | areas, energies, how the step went | `observe` |
 //!

@@ -2,7 +2,12 @@
 //!
 //! Vertices first slide along their films ([`Slides`]), which is a motion of the mesh and no velocity. From there the flow proposes
 //! positions ([`froth_surface::flow`]), with exact volumes; then every vertex goes as far as no film touches another
-//! ([`froth_surface::motion`]). A proposal that would carry a vertex farther than half an edge length is taken in pieces.
+//! ([`froth_surface::motion`]).
+//!
+//! # Limits
+//! A proposal that would carry a vertex farther than half an edge length, or faces out of shape
+//! ([`froth_surface::flow::shape_keeping`]), is made again for a shorter time. The step ends there: the mesh is mended, and the next
+//! step goes on. Faces that lose their shapes for less than [`LEAST_PART`] of the step do lose them: time goes on.
 
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
@@ -12,6 +17,7 @@ use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Position, Velocity};
 use froth_surface::calculus::Weights;
+use froth_surface::flow::shape_keeping::{LEAST_PART, even_part};
 use froth_surface::flow::{Acceleration, Flow, FlowError, FlowState, Forcing, Mass};
 use froth_surface::motion::{MotionSettings, advance};
 use froth_surface::{PerVertex, Surface};
@@ -20,7 +26,9 @@ use thiserror::Error;
 
 use super::measure::{FlowWork, lay_out, mass_of};
 use super::settings::FlowRules;
+use super::step_length::AskedLength;
 use crate::bubbles::gas::BubbleGas;
+use crate::clock::{StepLimits, end_of_step};
 use crate::observe::{Fault, Faults};
 use crate::rows::{fill_column, read_column};
 use crate::stage::Stage;
@@ -28,27 +36,27 @@ use crate::tracker::films::{self, MeshRules, TopologyChanged};
 use crate::tracker::remeshing::Slides;
 use crate::tracker::wires::{Holders, MOST_STOPS, Pins, WireLag, WireStuck};
 
-/// Part of an edge length that a vertex may move in one piece of a step.
+/// Part of an edge length that a vertex may move in one step.
 const LONGEST_WAY: f64 = 0.5;
-/// Pieces that a step may take: beyond, the films are running away.
-const MOST_PIECES: u32 = 64;
+/// Part of the step that was asked for below which films that still go too far are running away.
+const SHORTEST_STEP: f64 = 1.0 / 64.0;
+/// Proposals that may be made for the sake of shapes.
+const MOST_PROPOSALS: u32 = 8;
 /// Part of a step that is nothing but rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The step as the flow proposes it, and what became of it. Not part of the state of a run.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct FlowStep {
-    /// Pieces that the step is taken in.
-    pub pieces: u32,
-    /// Length of one, s.
-    pub length: f64,
+    /// Proposals that were made: more than one where the step ended early.
+    pub proposals: u32,
     /// Free vertices that could not go all their way.
     pub limited: usize,
     /// Least fraction of its way that one went, dimensionless.
     pub least_fraction: f64,
-    /// Iterations of the linear solver: all that the step took, also for proposals that went too far and were cut into pieces.
+    /// Iterations of the linear solver in all proposals.
     pub solve_iterations: u32,
-    /// Substeps of the explicit scheme, counted in the same way.
+    /// Substeps of the explicit scheme in all proposals.
     pub substeps: u32,
     masses: Vec<f64>,
     pushes: Vec<DVec3>,
@@ -60,87 +68,111 @@ enum MotionFault {
     /// The flow found no proposal.
     #[error(transparent)]
     Flow(#[from] FlowError),
-    /// A vertex would go too far, however short the pieces of the step.
+    /// A vertex would go too far, however short the step.
     #[error(
-        "a vertex would move {ways:.1} edge lengths in a {pieces}th of the step: the films run away; shorten `time_step`"
+        "a vertex would move {ways:.1} edge lengths in {length:.3e} s, a {part:.0}th of the step: the films run away; shorten `time_step`"
     )]
     RunsAway {
         /// Way, in edge lengths.
         ways: f64,
-        /// Pieces that the step was cut into.
-        pieces: u32,
+        /// Time that it would take, s.
+        length: f64,
+        /// How many times as long the step was to be.
+        part: f64,
     },
     /// A wire cannot go on.
     #[error(transparent)]
     Wire(#[from] WireStuck),
 }
 
-/// A part of the step, s since its start.
+/// What a proposal does to the mesh.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
-    from: f64,
-    length: f64,
+struct Reach {
+    /// Longest way of a vertex, in edge lengths.
+    ways: f64,
+    /// Part of the way for which all faces keep their shapes, 0 to 1.
+    even: f64,
 }
 
-/// Works out where tension, pressure, external forces and wires take the films.
-pub fn propose_motion(world: &mut World) {
-    let length = world.resource::<Clock>().step_length;
-    let edge = world.resource::<MeshRules>().policy.edge;
-    let (masses, pushes) = loads(world);
-    let mut step = FlowStep { pieces: 1, length, least_fraction: 1.0, masses, pushes, ..FlowStep::default() };
-    let proposed = with_flow(world, |world, surface, flow, state| {
-        loop {
-            let piece = Piece { from: 0.0, length: step.length };
-            propose(world, &mut step, piece, surface, flow, state)?;
-            let ways = longest_way(surface, flow) / edge;
-            let wanted = (ways / LONGEST_WAY).ceil();
-            if wanted <= 1.0 {
-                return Ok(());
+impl Reach {
+    /// Name and length of the step to be tried next, s; `None` where the mesh bears the one of `length`. `asked`: length of the step at
+    /// first; `proposals`: how many there were.
+    fn shorter(self, length: f64, asked: f64, proposals: u32) -> Result<Option<(&'static str, f64)>, MotionFault> {
+        if self.ways > LONGEST_WAY {
+            let shortest = SHORTEST_STEP * asked;
+            if length <= shortest * (1.0 + ROUNDING) {
+                return Err(MotionFault::RunsAway { ways: self.ways, length, part: asked / length });
             }
-            if step.pieces >= MOST_PIECES {
-                return Err(MotionFault::RunsAway { ways, pieces: step.pieces });
-            }
-            step.pieces = ((f64::from(step.pieces) * wanted) as u32).min(MOST_PIECES);
-            step.length = length / f64::from(step.pieces);
+            return Ok(Some(("longest way", (length / (self.ways / LONGEST_WAY).ceil()).max(shortest))));
         }
-    });
+        let shortest = LEAST_PART * asked;
+        let is_borne = self.even >= 1.0 || length <= shortest || proposals >= MOST_PROPOSALS;
+        Ok((!is_borne).then(|| ("shapes of faces", (self.even * length).max(shortest))))
+    }
+}
+
+/// Works out where tension, pressure, gas that is let in, external forces and wires take the films, and ends the step where the mesh would
+/// have to be mended.
+pub fn propose_motion(world: &mut World) {
+    let asked = world.resource::<Clock>().step_length;
+    world.insert_resource(AskedLength(asked));
+    let (masses, pushes) = loads(world);
+    let mut step = FlowStep { least_fraction: 1.0, masses, pushes, ..FlowStep::default() };
+    let gas = world.resource::<BubbleGas>().clone();
+    let proposed = loop {
+        let clock = *world.resource::<Clock>();
+        let mut filled = gas.clone();
+        filled.fill(clock.time, end_of_step(&clock));
+        world.insert_resource(filled);
+        step.proposals += 1;
+        let reach = propose_step(world, &mut step);
+        match reach.and_then(|reach| reach.shorter(clock.step_length, asked, step.proposals)) {
+            Ok(Some((limit, length))) => end_step_after(world, limit, length),
+            Ok(None) => break Ok(()),
+            Err(fault) => break Err(fault),
+        }
+    };
     report(world, Stage::Dynamics, proposed);
     world.insert_resource(step);
 }
 
-/// Moves the films to where they are proposed to be, as far as none touches another, piece by piece.
+fn end_step_after(world: &mut World, limit: &'static str, length: f64) {
+    world.resource_mut::<Clock>().step_length = length;
+    world.resource_mut::<StepLimits>().propose(limit, length);
+}
+
+/// A proposal for the step as long as it is, and what it does to the mesh.
+fn propose_step(world: &mut World, step: &mut FlowStep) -> Result<Reach, MotionFault> {
+    let MeshRules { policy, remesh, .. } = *world.resource::<MeshRules>();
+    with_flow(world, |world, surface, flow, state| {
+        propose(world, step, surface, flow, state)?;
+        // A mesh that nobody mends only gets later what it does not get now.
+        let even = if remesh { even_part(surface, &flow.proposal().positions.0) } else { 1.0 };
+        Ok(Reach { ways: longest_way(surface, flow) / policy.edge, even })
+    })
+}
+
+/// Moves the films to where they are proposed to be, as far as none touches another.
 ///
 /// Where a wire would carry a film through another, all motion stops short of that; the wire catches up once the tracker has joined what
 /// met, and one that cannot go on for many steps is a fault.
 pub fn move_films(world: &mut World) {
-    let whole = world.resource::<Clock>().step_length;
+    let length = world.resource::<Clock>().step_length;
     let mut step = std::mem::take(&mut *world.resource_mut::<FlowStep>());
     let settings = MotionSettings::new(world.resource::<MeshRules>().policy.edge);
     let moved = with_flow(world, |world, surface, flow, state| {
-        let mut piece = Piece { from: 0.0, length: step.length };
-        let mut lag = *world.resource::<WireLag>();
-        loop {
-            let wanted = flow.proposal().positions.clone();
-            let from = surface.positions.clone();
-            let report = advance(surface, &wanted.0, &settings);
-            step.limited = step.limited.max(report.limited_vertices);
-            step.least_fraction = step.least_fraction.min(report.least_fraction).min(report.pinned_fraction);
-            flow.finish(&as_if_whole(&from, &wanted, surface, report.pinned_fraction), piece.length, state);
-            if report.pinned_fraction < 1.0 {
-                let done = piece.from + report.pinned_fraction * piece.length;
-                let stopped = lag.stopped(whole, done, MOST_STOPS);
-                *world.resource_mut::<WireLag>() = lag;
-                return Ok(stopped?);
-            }
-            let left = whole - piece.from - piece.length;
-            if left <= ROUNDING * whole {
-                lag.went_on(whole);
-                *world.resource_mut::<WireLag>() = lag;
-                return Ok(());
-            }
-            piece = Piece { from: piece.from + piece.length, length: step.length.min(left) };
-            propose(world, &mut step, piece, surface, flow, state)?;
+        let wanted = flow.proposal().positions.clone();
+        let from = surface.positions.clone();
+        let report = advance(surface, &wanted.0, &settings);
+        step.limited = report.limited_vertices;
+        step.least_fraction = report.least_fraction.min(report.pinned_fraction);
+        flow.finish(&as_if_whole(&from, &wanted, surface, report.pinned_fraction), length, state);
+        let mut lag = world.resource_mut::<WireLag>();
+        if report.pinned_fraction < 1.0 {
+            return Ok(lag.stopped(length, report.pinned_fraction * length, MOST_STOPS)?);
         }
+        lag.went_on(length);
+        Ok(())
     });
     report(world, Stage::Deform, moved);
     world.insert_resource(step);
@@ -202,10 +234,10 @@ fn loads(world: &mut World) -> (Vec<f64>, Vec<DVec3>) {
 }
 
 /// Films, work space and state of the flow out of the world, and back with what `work` makes of them.
-fn with_flow(
+fn with_flow<T>(
     world: &mut World,
-    work: impl FnOnce(&mut World, &mut Surface, &mut Flow, &mut FlowState) -> Result<(), MotionFault>,
-) -> Result<(), MotionFault> {
+    work: impl FnOnce(&mut World, &mut Surface, &mut Flow, &mut FlowState) -> Result<T, MotionFault>,
+) -> Result<T, MotionFault> {
     let mut surface = films::take(world);
     let mut scratch = std::mem::take(&mut *world.resource_mut::<FlowWork>());
     let gas = world.resource::<BubbleGas>().clone();
@@ -223,27 +255,25 @@ fn with_flow(
 fn propose(
     world: &World,
     step: &mut FlowStep,
-    piece: Piece,
     surface: &mut Surface,
     flow: &mut Flow,
     state: &FlowState,
 ) -> Result<(), FlowError> {
     let (rules, liquid) = (world.resource::<FlowRules>(), world.resource::<Liquid>());
-    let targets = targets(world, surface, piece);
+    let targets = targets(world, surface);
     let forcing = Forcing {
         tension: Weights::Uniform(2.0 * liquid.surface_tension),
         mass: Mass::PerVertex(&step.masses),
         acceleration: Acceleration::PerVertex(&step.pushes),
         targets: targets.as_deref(),
     };
-    let slides =
-        world.get_resource::<Slides>().filter(|slides| piece.from == 0.0 && slides.0.len() == surface.positions.len());
+    let slides = world.get_resource::<Slides>().filter(|slides| slides.0.len() == surface.positions.len());
     let unslid = slides.map(|slides| {
         let unslid = surface.positions.clone();
         surface.positions.0.iter_mut().zip(slides.0.iter()).for_each(|(x, d)| *x += *d);
         unslid
     });
-    let info = flow.propose(surface, state, &forcing, &rules.settings, piece.length);
+    let info = flow.propose(surface, state, &forcing, &rules.settings, world.resource::<Clock>().step_length);
     if let Some(unslid) = unslid {
         surface.positions = unslid;
     }
@@ -253,14 +283,14 @@ fn propose(
     Ok(())
 }
 
-/// Where held vertices are at the end of a piece; `None` where no wire moves.
-fn targets(world: &World, surface: &Surface, piece: Piece) -> Option<Vec<DVec3>> {
+/// Where held vertices are at the end of the step; `None` where no wire moves.
+fn targets(world: &World, surface: &Surface) -> Option<Vec<DVec3>> {
     let holders = world.resource::<Holders>();
     if !holders.move_at_all() {
         return None;
     }
-    let clock = world.resource::<Clock>();
-    let (from, to) = world.resource::<WireLag>().window(clock.time, clock.step_length, piece.from, piece.length);
+    let Clock { time, step_length, .. } = *world.resource::<Clock>();
+    let (from, to) = world.resource::<WireLag>().window(time, step_length, 0.0, step_length);
     let pins = world.resource::<Pins>();
     let positions: Vec<Position> = surface.positions.iter().map(|x| Position(*x)).collect();
     Some(holders.targets(&positions, &pins.0, from, to))
@@ -274,5 +304,34 @@ fn longest_way(surface: &Surface, flow: &Flow) -> f64 {
 fn report(world: &mut World, stage: Stage, done: Result<(), MotionFault>) {
     if let Err(error) = done {
         world.resource_mut::<Faults>().report(Fault::new(stage, "geometric flow", error.to_string()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn next(ways: f64, even: f64, length: f64, proposals: u32) -> Result<Option<(&'static str, f64)>, MotionFault> {
+        Reach { ways, even }.shorter(length, 1.0, proposals)
+    }
+
+    #[test]
+    fn a_step_that_the_mesh_bears_is_not_cut() {
+        assert_eq!(next(LONGEST_WAY, 1.0, 1.0, 1), Ok(None));
+    }
+
+    #[test]
+    fn a_step_ends_where_faces_lose_their_shapes_and_never_at_once() {
+        assert_eq!(next(0.1, 0.75, 1.0, 1), Ok(Some(("shapes of faces", 0.75))));
+        assert_eq!(next(0.1, 0.0, 0.75, 2), Ok(Some(("shapes of faces", LEAST_PART))));
+        assert_eq!(next(0.1, 0.0, LEAST_PART, 3), Ok(None));
+        assert_eq!(next(0.1, 0.9, 0.5, MOST_PROPOSALS), Ok(None));
+    }
+
+    #[test]
+    fn films_that_go_too_far_in_the_shortest_step_run_away() {
+        assert_eq!(next(1.2, 1.0, 1.0, 1), Ok(Some(("longest way", 1.0 / 3.0))));
+        assert_eq!(next(1e3, 1.0, 1.0, 1), Ok(Some(("longest way", SHORTEST_STEP))));
+        assert!(matches!(next(1.2, 1.0, SHORTEST_STEP, 9), Err(MotionFault::RunsAway { .. })));
     }
 }

@@ -42,7 +42,7 @@ pub fn observe_films(
     }
     observables.record("limited_vertices", "1", step.limited as f64);
     observables.record("least_fraction", "1", step.least_fraction);
-    observables.record("pieces", "1", f64::from(step.pieces));
+    observables.record("proposals", "1", f64::from(step.proposals));
     observables.record("substeps", "1", f64::from(step.substeps));
     observables.record("solve_iterations", "1", f64::from(step.solve_iterations));
 }

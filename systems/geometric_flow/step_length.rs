@@ -1,9 +1,11 @@
 //! The step length that the flow asks for: no vertex crosses more than `cfl` edge lengths.
 //!
-//! The speed is that of the step before, so a step is at most half as long again as the one before it. The first step goes by what
+//! The speed is that of the step before, so a step is at most half as long again as the one before it was asked to be; that may have
+//! ended early ([`motion`](super::motion)). The first step goes by what
 //! a film bent to the radius of one edge length would do: speed `mobility * 2 sigma / L`, or acceleration `2 sigma / (m L)`.
 
 use bevy_ecs::query::With;
+use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
 use froth_components::film::{Area, LiquidVolume};
@@ -11,6 +13,7 @@ use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::Velocity;
 use froth_surface::flow::Motion;
+use serde::{Deserialize, Serialize};
 
 use super::measure::mass_of;
 use super::settings::FlowRules;
@@ -22,6 +25,12 @@ use crate::tracker::films::MeshRules;
 /// Longest step in steps before.
 const GROWTH: f64 = 1.5;
 
+/// Length that the last step was asked to have, s; it may have ended before. State of a run: without it, steps that end early one after
+/// the other would grow shorter and shorter.
+#[derive(Resource, Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct AskedLength(pub f64);
+
 /// Proposes the step length by the fastest vertex, and the scene's own.
 pub fn limit_step(
     vertices: Query<(&Velocity, &Area, &LiquidVolume), With<MeshVertex>>,
@@ -29,6 +38,7 @@ pub fn limit_step(
     mesh: Res<MeshRules>,
     liquid: Res<Liquid>,
     clock: Res<Clock>,
+    asked: Res<AskedLength>,
     mut limits: ResMut<StepLimits>,
 ) {
     limits.propose("time_step", rules.step);
@@ -40,7 +50,7 @@ pub fn limit_step(
     let (edge, tension) = (mesh.policy.edge, 2.0 * liquid.surface_tension);
     limits.propose("cfl", rules.cfl * edge / fastest);
     if clock.steps > 0 {
-        limits.propose("growth", GROWTH * clock.step_length);
+        limits.propose("growth", GROWTH * asked.0);
         return;
     }
     let first = match rules.settings.motion {

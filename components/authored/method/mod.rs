@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 pub use geometric_flow::{FilmMotion, GeometricFlowSettings, Inertial, Mass, Overdamped, TensionScheme, VolumeRule};
 pub use melp::{Gas, MelpSettings, Transfer};
-pub use remesh::{Contact, Remesh};
+pub use remesh::{Contact, Placement, Remesh};
 pub use vortex_sheet::{Discretisation, Integrator, Kernel, PairSummation, VortexSheetSettings};
 
 use crate::quantity::{MassPerArea, range};

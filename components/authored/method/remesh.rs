@@ -14,6 +14,17 @@ pub enum Contact {
     Bounce,
 }
 
+/// Where the vertices go that splits of long edges make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Placement {
+    /// In the middles of their edges: a film bends there only once it moves.
+    #[default]
+    Midpoint,
+    /// Where the smooth film has the middle (modified butterfly), if nothing is in the way. Bubbles get back what that changes of their
+    /// volumes, where these are kept.
+    Butterfly,
+}
+
 /// How the mesh is kept fine and even, and how films meet and part. Lengths are fractions of the edge length that the
 /// scene's resolution asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +45,8 @@ pub struct Remesh {
     pub shortest: Ratio,
     /// Edges longer than this are split, 1 to 4. Default 1.5.
     pub longest: Ratio,
+    /// Where the vertices go that splits make. Default [`Placement::Midpoint`].
+    pub placement: Placement,
 }
 
 impl Default for Remesh {
@@ -47,6 +60,7 @@ impl Default for Remesh {
             snap: Ratio::from_si(0.1),
             shortest: Ratio::from_si(0.5),
             longest: Ratio::from_si(1.5),
+            placement: Placement::Midpoint,
         }
     }
 }
@@ -85,17 +99,18 @@ impl<'de> Deserialize<'de> for Remesh {
             shortest: Ratio,
             #[serde(deserialize_with = "range::one_to_four")]
             longest: Ratio,
+            placement: Placement,
         }
         impl Default for Fields {
             fn default() -> Self {
-                let Remesh { enabled, flips, smoothing, topology, contact, snap, shortest, longest } =
+                let Remesh { enabled, flips, smoothing, topology, contact, snap, shortest, longest, placement } =
                     Remesh::default();
-                Self { enabled, flips, smoothing, topology, contact, snap, shortest, longest }
+                Self { enabled, flips, smoothing, topology, contact, snap, shortest, longest, placement }
             }
         }
-        let Fields { enabled, flips, smoothing, topology, contact, snap, shortest, longest } =
+        let Fields { enabled, flips, smoothing, topology, contact, snap, shortest, longest, placement } =
             Fields::deserialize(deserializer)?;
-        let remesh = Self { enabled, flips, smoothing, topology, contact, snap, shortest, longest };
+        let remesh = Self { enabled, flips, smoothing, topology, contact, snap, shortest, longest, placement };
         remesh.check().map_err(Refusal::into_serde)
     }
 }
@@ -112,5 +127,13 @@ mod tests {
         assert!(read("(shortest: 0.76)").is_err());
         assert!(read("(snap: 0.3, shortest: 0.3)").is_err());
         assert!(read("(longest: 0.9)").is_err());
+    }
+
+    #[test]
+    fn new_vertices_go_to_one_of_two_places() {
+        let read = |text: &str| ron::from_str::<Remesh>(text).map(|remesh| remesh.placement);
+        assert_eq!(read("()").unwrap(), Placement::Midpoint);
+        assert_eq!(read("(placement: Butterfly)").unwrap(), Placement::Butterfly);
+        assert!(read("(placement: Loop)").is_err());
     }
 }

@@ -29,7 +29,9 @@ use crate::rows::VertexRow;
 /// Least angle that a split may leave for the sweeps after it to mend, radians: 12 degrees.
 const LEAST_LEFT: f64 = 12.0 / 180.0 * std::f64::consts::PI;
 
-/// Where an edge is divided: off its middle, since rounding must not decide which half is the shorter.
+/// Where an edge is divided: off its middle. Exact halves make vertices that lie on the line or in the plane of a face beside them. A collapse
+/// onto them leaves a face without area, of which rounding decides where it looks (`turns_over`, `tangles`), and a snap along such a
+/// plane is blocked or not by rounding.
 const PART: f64 = 0.48;
 
 impl Session<'_> {

@@ -6,7 +6,8 @@
 //!
 //! # Discretisation
 //! `M_v` has rank 1 on a film, 2 on a Plateau border, 3 where borders meet; eigenvalues below [`RANK_CUT`] of the largest are
-//! dropped, so that nearly flat borders count as films.
+//! dropped, so that nearly flat borders count as films. Where a film is folded over itself its area vectors cancel, and dividing by
+//! what is left would make velocities of noise: there `M` counts as that of a fold of [`FOLD_CUT`].
 
 use glam::{DMat3, DVec3};
 
@@ -15,6 +16,9 @@ use crate::symmetric::{RangeInverse, outer};
 
 /// Part of the largest eigenvalue below which one counts as zero.
 pub const RANK_CUT: f64 = 1e-3;
+
+/// Part of its area, an area vector's length over that of its faces, below which a film counts as folded over itself: to within twelve degrees.
+pub const FOLD_CUT: f64 = 0.2;
 
 /// Shape of the films.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +57,7 @@ impl Geometry {
         }
         for (v, middle) in self.middles.iter_mut().enumerate() {
             *middle = if self.areas[v] > 0.0 { *middle / self.areas[v] } else { positions[v] };
-            self.ranges.push(range_of(&self.gradients[layout.sides_of(v)]));
+            self.ranges.push(range_of(&self.gradients[layout.sides_of(v)], self.areas[v]));
         }
     }
 
@@ -70,12 +74,15 @@ impl Geometry {
     }
 }
 
-fn range_of(gradients: &[DVec3]) -> RangeInverse {
+fn range_of(gradients: &[DVec3], area: f64) -> RangeInverse {
     match gradients {
         [] => RangeInverse::default(),
         // Films between two regions: the gradients are opposite.
-        [n, _] => RangeInverse::of_film(*n),
-        several => RangeInverse::of(several.iter().fold(DMat3::ZERO, |m, n| m + outer(*n, *n)), RANK_CUT),
+        [n, _] => RangeInverse::of_film(*n, FOLD_CUT * area),
+        several => {
+            let matrix = several.iter().fold(DMat3::ZERO, |m, n| m + outer(*n, *n));
+            RangeInverse::of(matrix, RANK_CUT, RANK_CUT * area * area)
+        }
     }
 }
 
@@ -98,4 +105,28 @@ pub fn edges([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
 #[inline]
 pub fn circulations(panel: &Panel, potentials: &[f64]) -> [f64; 3] {
     std::array::from_fn(|k| potentials[panel.front[k] as usize] - potentials[panel.back[k] as usize])
+}
+
+#[cfg(test)]
+mod tests {
+    use froth_surface::Surface;
+    use froth_surface::shapes::icosphere;
+
+    use super::*;
+
+    #[test]
+    fn a_film_that_is_folded_over_itself_is_not_moved_by_noise() {
+        let surface = Surface::from_triangles(&icosphere(DVec3::ZERO, 1.0, 0.3));
+        let layout = Layout::new(&surface);
+        let mut geometry = Geometry::default();
+        // Pressed flat: at the rim area vectors of both sides cancel but for the thickness.
+        for thickness in [1.0, 1e-1, 1e-3, 1e-9, 0.0] {
+            let flat: Vec<DVec3> = surface.positions.iter().map(|x| DVec3::new(x.x, x.y, thickness * x.z)).collect();
+            geometry.measure(&layout, &flat);
+            let shapes = geometry.ranges.iter().zip(&geometry.areas);
+            let widest = shapes.map(|(range, area)| (range.inverse * DVec3::ONE).length() * area * area);
+            let widest = widest.fold(0.0, f64::max);
+            assert!(widest < 3f64.sqrt() * 0.5 / FOLD_CUT.powi(2) * (1.0 + 1e-12), "{thickness}: {widest:e}");
+        }
+    }
 }

@@ -29,6 +29,7 @@ pub mod error;
 pub mod flow;
 pub mod geometry;
 pub mod impulse;
+pub mod inelastic;
 pub mod integration;
 pub mod layout;
 pub mod pointwise;

@@ -34,6 +34,9 @@ type Table = SmallVec<[SidePotential; 3]>;
 #[cfg_attr(feature = "bevy_ecs", derive(bevy_ecs::resource::Resource))]
 pub struct Potentials {
     tables: Vec<Table>,
+    /// Vertices that became one with another since the potentials were scattered.
+    #[serde(skip)]
+    met: Vec<bool>,
 }
 
 impl Potentials {
@@ -52,7 +55,8 @@ impl Potentials {
             potential: potentials[side],
             head: heads[side],
         };
-        Self { tables: (0..layout.vertex_rows()).map(|v| layout.sides_of(v).map(at).collect()).collect() }
+        let tables: Vec<Table> = (0..layout.vertex_rows()).map(|v| layout.sides_of(v).map(at).collect()).collect();
+        Self { met: vec![false; tables.len()], tables }
     }
 
     /// Potentials and heads per side of the layout of the same mesh; regions that the table does not know get zero.
@@ -78,6 +82,12 @@ impl Potentials {
     #[must_use]
     pub fn circulation(&self, vertex: VertexRow, i: Region, j: Region) -> Option<f64> {
         Some(self.potential(vertex, j)? - self.potential(vertex, i)?)
+    }
+
+    /// Whether the vertex became one with another since the potentials were scattered: its circulation is the mean of two.
+    #[must_use]
+    pub fn has_met(&self, vertex: VertexRow) -> bool {
+        self.met.get(vertex.index()).copied().unwrap_or(false)
     }
 
     /// Rows of vertices.

@@ -14,8 +14,8 @@
 
 use std::collections::BTreeMap;
 
-use froth_biot_savart::{PairSum, SheetKernel, Summation};
-use froth_surface::calculus::volume::volume_gradients;
+use froth_biot_savart::{PairSum, PanelSums, SheetKernel, Summation};
+use froth_surface::calculus::volume::{volume_gradients, volumes as measured_volumes};
 use froth_surface::calculus::{Incidence, Weights};
 use froth_surface::flow::FlowError;
 use froth_surface::flow::pressure_system::PressureSystem;
@@ -29,6 +29,7 @@ use crate::discretisation::{Discretisation, Films, Scheme, Sources};
 use crate::flow;
 use crate::geometry::Geometry;
 use crate::impulse::Clusters;
+use crate::inelastic;
 use crate::layout::Layout;
 use crate::region_pressures;
 use crate::sliding::Sliding;
@@ -36,6 +37,8 @@ use crate::wires::{WireSolve, Wires};
 
 /// Largest relative error of a volume after the projection.
 const VOLUME_TOLERANCE: f64 = 1e-14;
+/// Relative error of a volume that is left to the next step where the projection does not get farther.
+const VOLUME_ENOUGH: f64 = 1e-6;
 /// Iterations of the projection.
 const MOST_SWEEPS: u32 = 50;
 
@@ -275,6 +278,51 @@ impl Sheet {
         Ok(())
     }
 
+    /// Kinetic energy of the air with the films where they were last measured, J; one sum over pairs.
+    ///
+    /// # Errors
+    /// [`SheetError::Pairs`].
+    pub fn kinetic_energy(&mut self, positions: &[DVec3], potentials: &[f64], density: f64) -> Result<f64, SheetError> {
+        let fluxes = self.fluxes(positions, potentials)?;
+        Ok(density * inelastic::energy(potentials, &fluxes))
+    }
+
+    /// Fluxes per side, m^3/s; one sum over pairs.
+    fn fluxes(&mut self, positions: &[DVec3], potentials: &[f64]) -> Result<Vec<f64>, SheetError> {
+        self.place_panels();
+        flow::strengths(&self.layout, positions, potentials, &mut self.strengths);
+        let (mut sums, mut fluxes) = (PanelSums::default(), Vec::new());
+        self.pairs.potentials_and_gradients(&self.strengths, &mut sums)?;
+        flow::fluxes(&self.layout, positions, &sums.potentials, &mut fluxes);
+        Ok(fluxes)
+    }
+
+    /// Slows the films down at the `chosen` vertices until the air's kinetic energy is at most `most` J; gives what was lost, J.
+    /// See [`inelastic`].
+    ///
+    /// # Errors
+    /// [`SheetError::Pairs`].
+    pub fn calm(
+        &mut self,
+        positions: &[DVec3],
+        chosen: &[bool],
+        density: f64,
+        most: f64,
+        potentials: &mut [f64],
+    ) -> Result<f64, SheetError> {
+        let areas = &self.geometry.areas;
+        let scales: Vec<f64> = (0..self.layout.side_count() as u32)
+            .map(|side| self.layout.vertex_of(side) as usize)
+            .map(|v| if chosen[v] && areas[v] > 0.0 { areas[v].recip() } else { 0.0 })
+            .collect();
+        let mut fluxes = |phi: &mut [f64]| {
+            self.layout.tie(phi);
+            self.fluxes(positions, phi)
+        };
+        let lost = inelastic::calm(&scales, most / density, &mut fluxes, potentials)?;
+        Ok(density * lost)
+    }
+
     /// Impulse per density of each free cluster, m^4/s.
     #[must_use]
     pub fn impulses(&self, potentials: &[f64]) -> Vec<DVec3> {
@@ -295,7 +343,7 @@ impl Sheet {
     }
 
     /// Moves positions by the least motion that gives every closed region its volume (m^3), and says how far the farthest
-    /// vertex went, metres.
+    /// vertex went, metres. Bubbles smaller than `unresolved` m^3 keep the volume that they have where theirs is out of reach.
     ///
     /// # Errors
     /// [`SheetError::Volumes`] where a region has no volume to meet, or cannot meet it.
@@ -303,34 +351,53 @@ impl Sheet {
         &mut self,
         positions: &mut [DVec3],
         volumes: &BTreeMap<Region, f64>,
+        unresolved: f64,
     ) -> Result<f64, SheetError> {
-        if self.incidence.closed().is_empty() {
+        let closed = self.incidence.closed();
+        if closed.is_empty() {
             return Ok(0.0);
         }
         let target = |region: &Region| volumes.get(region).copied().ok_or(FlowError::NoTarget { region: *region });
-        let targets = self.incidence.closed().iter().map(target).collect::<Result<Vec<f64>, _>>()?;
+        let mut targets = closed.iter().map(target).collect::<Result<Vec<f64>, _>>()?;
+        let before = positions.to_vec();
+        let mut present = Vec::new();
+        loop {
+            let missed = match self.project(positions, &targets) {
+                Ok(()) => break,
+                Err(FlowError::VolumeNotReached { region, error, .. }) if error.is_finite() => region,
+                Err(other) => return Err(other.into()),
+            };
+            let row = self.incidence.closed().binary_search(&missed).unwrap_or_default();
+            positions.copy_from_slice(&before);
+            measured_volumes(&self.incidence, positions, &mut present);
+            if !(targets[row] < unresolved) || targets[row] == present[row] {
+                return self.project(positions, &targets).map(|()| 0.0).map_err(SheetError::from);
+            }
+            targets[row] = present[row];
+        }
+        Ok(positions.iter().zip(&before).map(|(x, old)| x.distance(*old)).fold(0.0, f64::max))
+    }
+
+    fn project(&mut self, positions: &mut [DVec3], targets: &[f64]) -> Result<(), FlowError> {
         let Projection { system, multipliers, gradients, inverse } = &mut self.projection;
         volume_gradients(&self.incidence, positions, gradients);
+        let free = self.geometry.areas.iter().zip(self.wires.held());
         inverse.clear();
-        inverse.extend(
-            self.geometry
-                .areas
-                .iter()
-                .zip(self.wires.held())
-                .map(|(area, held)| if *held || !(*area > 0.0) { 0.0 } else { area.recip() }),
-        );
+        inverse.extend(free.map(|(area, held)| if *held || !(*area > 0.0) { 0.0 } else { area.recip() }));
         system.fill(&self.incidence, gradients, inverse)?;
         let constraint = Constraint {
             incidence: &self.incidence,
             gradients,
             inverse,
-            targets: &targets,
+            targets,
             tolerance: VOLUME_TOLERANCE,
             max_iterations: MOST_SWEEPS,
         };
-        let before = positions.to_vec();
-        project(&constraint, system, positions, multipliers)?;
-        Ok(positions.iter().zip(&before).map(|(x, old)| x.distance(*old)).fold(0.0, f64::max))
+        match project(&constraint, system, positions, multipliers) {
+            // A bubble of a few faces gets there slowly: the next step goes on.
+            Err(FlowError::VolumeNotReached { error, .. }) if error <= VOLUME_ENOUGH => Ok(()),
+            other => other.map(drop),
+        }
     }
 
     /// Pressure of each region above the outside, Pa; that of open regions, which are the outside's air, is 0.

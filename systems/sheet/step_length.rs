@@ -23,6 +23,17 @@ pub fn shortest_edge(layout: &Layout, positions: &[DVec3]) -> f64 {
     lengths.map(DVec3::length_squared).fold(f64::INFINITY, f64::min).sqrt()
 }
 
+/// The largest rate at which films change their shape, 1/s, from the corners of their faces (metres) and the velocities there (m/s): differences of
+/// velocity along edges, over their lengths, or over `least` metres where they are shorter. Films that move as a whole have none.
+#[must_use]
+pub fn straining(faces: impl Iterator<Item = ([DVec3; 3], [DVec3; 3])>, least: f64) -> f64 {
+    let rates = faces.flat_map(|(x, w)| {
+        let (e, changes) = (edges(x), edges(w));
+        [0, 1, 2].map(|k| changes[k].length_squared() / e[k].length_squared().max(least * least))
+    });
+    rates.fold(0.0, f64::max).sqrt()
+}
+
 /// Part of the smoothing length below which edges do not shorten steps: half an edge at the usual `alpha` of 0.75 edges.
 pub const SLOWED: f64 = 2.0 / 3.0;
 
@@ -30,4 +41,23 @@ pub const SLOWED: f64 = 2.0 / 3.0;
 #[must_use]
 pub fn limiting_edge(shortest: f64, smoothing_length: f64) -> f64 {
     shortest.max(SLOWED * smoothing_length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn films_are_strained_by_what_they_do_to_their_edges_and_not_by_going_along() {
+        let x = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let drift = DVec3::new(5.0, -3.0, 2.0);
+        assert_eq!(straining(std::iter::once((x, [drift; 3])), 0.1), 0.0);
+        let stretched = x.map(|x| drift + x * 2.0);
+        assert!((straining(std::iter::once((x, stretched)), 0.1) - 2.0).abs() < 1e-14);
+        let short = x.map(|x| x * 0.01);
+        assert!(
+            (straining(std::iter::once((short, short.map(|x| x * 2.0))), 0.1) - 2.0 * 0.01 * 2f64.sqrt() / 0.1).abs()
+                < 1e-14
+        );
+    }
 }

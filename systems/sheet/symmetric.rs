@@ -17,25 +17,26 @@ pub struct RangeInverse {
 }
 
 impl RangeInverse {
-    /// Of `n n^T + n n^T`: a vertex in the middle of a film, with volume gradients `n` and `-n`.
+    /// Of `n n^T + n n^T`: a vertex in the middle of a film, with volume gradients `n` and `-n`. The inverse is no larger than that of gradients of
+    /// length `least`.
     #[must_use]
-    pub fn of_film(n: DVec3) -> Self {
+    pub fn of_film(n: DVec3, least: f64) -> Self {
         let square = n.length_squared();
         if !(square > 0.0) {
             return Self { inverse: DMat3::ZERO, projector: DMat3::ZERO };
         }
         let projector = outer(n, n) * square.recip();
-        Self { inverse: projector * (0.5 / square), projector }
+        Self { inverse: projector * (0.5 / square.max(least * least)), projector }
     }
 
-    /// Of a symmetric matrix; eigenvalues below `cut` times the largest are dropped.
+    /// Of a symmetric matrix; eigenvalues below `cut` times the largest, or below `least`, are dropped.
     #[must_use]
-    pub fn of(matrix: DMat3, cut: f64) -> Self {
+    pub fn of(matrix: DMat3, cut: f64, least: f64) -> Self {
         let (values, vectors) = eigen(matrix);
-        let largest = values.max_element();
+        let least = least.max(cut * values.max_element());
         let mut range = Self { inverse: DMat3::ZERO, projector: DMat3::ZERO };
         for (value, vector) in values.to_array().into_iter().zip([vectors.x_axis, vectors.y_axis, vectors.z_axis]) {
-            if value > cut * largest && value > 0.0 {
+            if value > least && value > 0.0 {
                 let along = outer(vector, vector);
                 range.inverse += along * value.recip();
                 range.projector += along;
@@ -109,7 +110,7 @@ mod tests {
     #[test]
     fn the_inverse_of_a_film_is_that_of_its_matrix() {
         let n = DVec3::new(0.3e-6, -1.2e-6, 0.7e-6);
-        let (closed, general) = (RangeInverse::of_film(n), RangeInverse::of(outer(n, n) * 2.0, 1e-3));
+        let (closed, general) = (RangeInverse::of_film(n, 0.0), RangeInverse::of(outer(n, n) * 2.0, 1e-3, 0.0));
         assert!(close(closed.projector, general.projector, 1e-14));
         assert!(close(closed.inverse * n.length_squared(), general.inverse * n.length_squared(), 1e-14));
     }
@@ -118,7 +119,7 @@ mod tests {
     fn two_films_at_an_angle_leave_one_direction_out() {
         let (a, b) = (DVec3::X, DVec3::new(-0.5, 0.75f64.sqrt(), 0.0));
         let m = outer(a, a) + outer(b, b);
-        let range = RangeInverse::of(m, 1e-3);
+        let range = RangeInverse::of(m, 1e-3, 0.0);
         assert!(close(m * range.inverse, range.projector, 1e-14));
         assert!((range.projector * DVec3::Z).length() < 1e-15);
         assert!(close(range.projector * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)), range.projector, 1e-14));
@@ -127,6 +128,6 @@ mod tests {
     #[test]
     fn a_matrix_of_rank_three_is_inverted() {
         let a = DMat3::from_cols_array(&[4.0, 1.0, -1.0, 1.0, 3.0, 0.5, -1.0, 0.5, 1.5]);
-        assert!(close(RangeInverse::of(a, 1e-3).inverse * a, DMat3::IDENTITY, 1e-14));
+        assert!(close(RangeInverse::of(a, 1e-3, 0.0).inverse * a, DMat3::IDENTITY, 1e-14));
     }
 }

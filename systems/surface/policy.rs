@@ -38,6 +38,9 @@ pub struct Policy {
     pub contact: Contact,
     /// Whether edges are flipped towards the Delaunay triangulation. Not for data that lives on vertices and jumps.
     pub flips: bool,
+    /// By how much the angles opposite to an edge must add up to more than half a turn for a flip, radians. Every flip smooths what vertices
+    /// carry a little, and pairs of faces that are Delaunay to a few degrees need none.
+    pub flip_excess: f64,
     /// Whether films that meet in a point or a line alone are pulled apart (T1, pinching).
     pub separation: bool,
     /// Where the vertices of splits of long edges go.
@@ -103,8 +106,15 @@ impl Policy {
             snap: 0.1,
             contact: Contact::Merge,
             flips: false,
+            flip_excess: 1e-6,
             separation: true,
             placement: Placement::Midpoint,
         }
+    }
+
+    /// Volume of the smallest bubble that the mesh can hold, m^3: a regular tetrahedron of edges `L`.
+    #[must_use]
+    pub fn least_volume(&self) -> f64 {
+        self.edge.powi(3) / (6.0 * std::f64::consts::SQRT_2)
     }
 }

@@ -30,12 +30,15 @@ pub struct Remeshed {
     pub events: Vec<Event>,
     /// Bodies of gas that came apart from their regions, with labels of their own.
     pub divisions: Vec<Division>,
+    /// Bubbles too small for the mesh, and the regions that they joined: `(gone, into)`.
+    pub joined: Vec<(Region, Region)>,
     /// Where rows went; `None` if none moved.
     pub remap: Option<Remap>,
 }
 
 impl Tracker {
-    /// A pass: snap, split, collapse, flip, separate, improve thin faces and refine narrow films, in this order; then rows are closed up.
+    /// A pass: snap, split, collapse, flip, separate, dissolve specks, improve thin faces and refine narrow films, in this order; then rows are closed
+    /// up.
     ///
     /// The surface must not intersect itself, and does not afterwards. `data` sees every operation and the new order of rows.
     pub fn remesh(&mut self, surface: &mut Surface, policy: &Policy, data: &mut dyn Transfer) -> Remeshed {
@@ -49,13 +52,15 @@ impl Tracker {
         if policy.flips {
             session.flip_edges();
         }
+        let mut joined = Vec::new();
         if policy.separation {
             session.separate_films();
+            joined = session.dissolve_specks();
         }
         session.improve_faces();
         let (counts, mut events) = (session.counts, session.events);
         let divisions = if events.is_empty() { Vec::new() } else { self.divide(surface, data, &mut events) };
-        Remeshed { counts, events, divisions, remap: self.close_up(surface, data) }
+        Remeshed { counts, events, divisions, joined, remap: self.close_up(surface, data) }
     }
 
     /// Opens a surface for single operations, in a step of its own.

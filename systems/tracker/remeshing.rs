@@ -53,7 +53,7 @@ pub fn remesh(world: &mut World) {
     if rules.remesh {
         change(world, |tracker, surface, columns| {
             let done = tracker.remesh(surface, &rules.policy, columns);
-            Changes { counts: done.counts, events: done.events, divisions: done.divisions, joined: Vec::new() }
+            Changes { counts: done.counts, events: done.events, divisions: done.divisions, joined: done.joined }
         });
     }
 }
@@ -98,7 +98,8 @@ pub(super) fn change(world: &mut World, operate: impl FnOnce(&mut Tracker, &mut 
     let changes = operate(&mut tracker, &mut surface, &mut data);
     followers.into_iter().for_each(|follower| follower.put_back(world));
     world.resource_mut::<TrackerState>().0 = tracker;
-    if changes.counts != (Counts { blocked: changes.counts.blocked, ..Counts::default() }) {
+    let has_operated = changes.counts != (Counts { blocked: changes.counts.blocked, ..Counts::default() });
+    if has_operated || !changes.joined.is_empty() {
         world.resource_mut::<TopologyChanged>().0 = true;
         let lost: f64 = columns.lost().filter(|(name, _)| *name == LiquidVolume::NAME).map(|(_, lost)| lost).sum();
         world.resource_mut::<LiquidLost>().0 += lost;

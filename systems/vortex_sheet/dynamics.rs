@@ -1,4 +1,4 @@
-//! What changes the potentials: tension and external forces, gas that is let in, wires.
+//! What changes the potentials: tension and external forces, wires.
 
 use bevy_ecs::world::World;
 use froth_components::kind::MeshVertex;
@@ -7,20 +7,9 @@ use glam::DVec3;
 
 use super::settings::SheetRules;
 use super::work::{SheetWork, external_forces, forcing, with_work};
-use crate::bubbles::gas::BubbleGas;
 use crate::rows::read_column;
 use crate::stage::Stage;
 use crate::tracker::wires::{Holders, WireLag};
-
-/// Gives the bubbles the volumes that they shall have at the end of the substep.
-pub fn fill_bubbles(world: &mut World) {
-    with_work(world, Stage::Dynamics, |world, work, substep| {
-        if !work.is_under_way {
-            world.resource_mut::<BubbleGas>().fill(substep.time, substep.time + substep.length);
-        }
-        Ok(())
-    });
-}
 
 /// Works out the pressures that hold the films against tension and external forces; integrators that kick change the potentials by them.
 pub fn press_by_tension(world: &mut World) {

@@ -6,19 +6,23 @@
 //! | `Geometry` | area vectors, volume gradients; columns of shape | `geometry` |
 //! | `Dynamics` | tension and external forces change the potentials | `dynamics` |
 //! | `Dynamics` | circulation on wires, so that films go with them | `dynamics` |
-//! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection | `velocity` |
-//! | `Deform` | integrator; volumes; films go there, as far as none touches another; damping; impulse | `motion` |
-//! | `Advance` | pressure of every bubble, impulse of every cluster | `motion` |
-//! | `Topology` | volumes and impulses after remeshing | `motion` |
+//! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection; a substep that turns out too long | `velocity` |
+//! | `Deform` | integrator; gas; films go where it says, as far as none touches another | `motion` |
+//! | `Deform` | at the end of a substep: second kick, impulse, damping | `arrival` |
+//! | `Deform`, `Topology` | films in contact lose energy | `contacts` |
+//! | `Topology` | volumes and impulses after remeshing | `remeshed` |
 //! | `Observe` | energies, circulations, how the step went | `observe` |
 //!
 //! `Geometry` to `Deform` are one evaluation; integrators that need several ask for another pass
 //! ([`AnotherPass`](crate::plan::AnotherPass)). The mathematics is [`froth_sheet`].
 
+pub mod arrival;
+pub mod contacts;
 pub mod dynamics;
 pub mod geometry;
 pub mod motion;
 pub mod observe;
+pub mod remeshed;
 pub mod settings;
 pub mod step_length;
 pub mod velocity;

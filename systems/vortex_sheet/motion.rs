@@ -4,29 +4,25 @@ use bevy_ecs::world::World;
 use froth_components::clock::Clock;
 use froth_components::kind::MeshVertex;
 use froth_components::motion::Position;
-use froth_sheet::potentials::centre;
-use froth_sheet::{Next, Potentials, Rates};
+use froth_sheet::{Next, Rates};
+use froth_surface::Surface;
 use froth_surface::motion::{MotionSettings, advance};
-use froth_surface::{EventKind, Region, Surface};
-use glam::DVec3;
 
-use super::geometry::lay_out;
 use super::settings::SheetRules;
-use super::work::{SheetFault, SheetWork, Substep, forcing, with_work};
+use super::work::{SheetFault, SheetWork, Substep, on_arrival, with_work};
 use crate::bubbles::gas::BubbleGas;
 use crate::plan::AnotherPass;
 use crate::rows::fill_column;
 use crate::stage::Stage;
-use crate::tracker::events::StepEvents;
-use crate::tracker::films::{self, MeshRules, TopologyChanged};
+use crate::tracker::films::{self, MeshRules};
 use crate::tracker::wires::{MOST_STOPS, WireLag};
 
-/// Part of an edge length that giving volumes back may move a vertex.
-const LONGEST_WAY: f64 = 0.5;
-
-/// Hands the rates to the integrator, and goes where it says.
-pub fn move_films(world: &mut World) {
+/// Hands the rates to the integrator, which asks for rates elsewhere or says where the substep ends.
+pub fn integrate(world: &mut World) {
     with_work(world, Stage::Deform, |world, work, substep| {
+        if !work.is_under_way {
+            return Ok(()); // The substep begins again, or is not taken.
+        }
         let rules = *world.resource::<SheetRules>();
         let mut rates = Vec::new();
         work.sheet.potential_rates(rules.density, &mut rates);
@@ -36,37 +32,49 @@ pub fn move_films(world: &mut World) {
                 let positions: Vec<Position> = work.state.positions.iter().map(|x| Position(*x)).collect();
                 fill_column::<MeshVertex, _>(world, &positions);
                 world.resource_mut::<AnotherPass>().0 = true;
-                Ok(())
             }
-            Next::Finish => {
-                work.is_under_way = false;
-                finish(world, work, substep)
-            }
+            Next::Finish => (work.is_under_way, work.has_arrived) = (false, true),
         }
+        Ok(())
     });
 }
 
-/// Moves the films to the end of the substep, as far as none touches another, and completes the potentials there.
-fn finish(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(), SheetFault> {
-    let mut surface = films::take(world);
-    surface.positions.0.clone_from(&work.integration.start().positions);
-    let moved = carry(world, work, substep, &mut surface);
-    work.state.positions.clone_from(&surface.positions.0);
-    films::put_back(world, surface);
-    moved?;
-    settle(world, work, substep)
+/// Gives the bubbles the volumes that they shall have at the end of the substep.
+pub fn fill_bubbles(world: &mut World) {
+    on_arrival(world, |world, _, substep| {
+        world.resource_mut::<BubbleGas>().fill(substep.time, substep.time + substep.length);
+        Ok(())
+    });
+}
+
+/// Moves the films to the end of the substep with the volumes that they shall have, as far as none touches another.
+pub fn move_films(world: &mut World) {
+    on_arrival(world, |world, work, substep| {
+        let mut surface = films::take(world);
+        surface.positions.0.clone_from(&work.integration.start().positions);
+        let moved = carry(world, work, substep, &mut surface);
+        work.state.positions.clone_from(&surface.positions.0);
+        films::put_back(world, surface);
+        moved?;
+        work.sheet.measure(&work.state.positions);
+        Ok(())
+    });
 }
 
 fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mut Surface) -> Result<(), SheetFault> {
-    let SheetWork { sheet, state, wire_velocities, report, .. } = work;
+    let SheetWork { sheet, state, wire_velocities, touching, report, .. } = work;
     let held = surface.pinned.iter().zip(wire_velocities).zip(&surface.positions.0);
     for (proposed, ((_, u), x)) in state.positions.iter_mut().zip(held).filter(|(_, ((held, _), _))| **held) {
         *proposed = *x + *u * substep.length;
     }
-    let correction = sheet.meet_volumes(&mut state.positions, &world.resource::<BubbleGas>().targets)?;
+    let policy = world.resource::<MeshRules>().policy;
+    let targets = &world.resource::<BubbleGas>().targets;
+    let correction = sheet.meet_volumes(&mut state.positions, targets, unresolved_volume(&policy))?;
     report.volume_correction = report.volume_correction.max(correction);
-    let settings = MotionSettings::new(world.resource::<MeshRules>().policy.edge);
-    let went = advance(surface, &state.positions, &settings);
+    let went = advance(surface, &state.positions, &MotionSettings::new(policy.edge));
+    let ways = surface.positions.0.iter().zip(&state.positions).zip(&surface.pinned.0);
+    touching.clear();
+    touching.extend(ways.map(|((x, proposed), held)| !held && x != proposed));
     report.limited = report.limited.max(went.limited_vertices);
     report.least_fraction = report.least_fraction.min(went.least_fraction).min(went.pinned_fraction);
     if went.limited_vertices > 0 || went.pinned_fraction < 1.0 {
@@ -83,93 +91,7 @@ fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mu
     Ok(())
 }
 
-/// The second kick, damping and impulse, where the films have come to.
-fn settle(world: &mut World, work: &mut SheetWork, substep: Substep) -> Result<(), SheetFault> {
-    let rules = *world.resource::<SheetRules>();
-    let SheetWork { sheet, state, heads, forces, impulses, report, .. } = work;
-    let forcing = forcing(world, forces);
-    heads.clone_from(&sheet.heads);
-    sheet.measure(&state.positions);
-    sheet.load(&state.positions, &forcing);
-    if let Some([_, after]) = rules.integrator.kicks() {
-        sheet.kick(after * substep.length, rules.density, heads, &mut state.potentials);
-    }
-    let gained = sheet.impulse_gained(&forcing, substep.length);
-    let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
-    let correction = sheet.keep_impulse(&state.positions, &wanted, &mut state.potentials);
-    report.impulse_correction = report.impulse_correction.max(correction);
-    sheet.damp(&state.positions, rules.diffusivity, substep.length, &mut state.potentials)?;
-    let kept = (-rules.damping * substep.length).exp();
-    state.potentials.iter_mut().for_each(|phi| *phi *= kept);
-    centre(&sheet.layout, &mut state.potentials);
-    let potentials = Potentials::scattered(&sheet.layout, &state.potentials, heads);
-    *world.resource_mut::<Potentials>() = potentials;
-    Ok(())
-}
-
-/// Fits one pressure per bubble to those that the films show where the step has taken them.
-pub fn fit_pressures(world: &mut World) {
-    with_work(world, Stage::Advance, |world, work, _| {
-        let pressures = work.sheet.region_pressures();
-        for (region, pressure) in &mut world.resource_mut::<BubbleGas>().pressures {
-            *pressure = pressures.get(region).copied().unwrap_or(0.0);
-        }
-        Ok(())
-    });
-}
-
-/// Notes the impulse of every free cluster, to be restored when the mesh has changed.
-pub fn note_impulses(world: &mut World) {
-    with_work(world, Stage::Advance, |_, work, _| {
-        let SheetWork { sheet, state, kept_impulses, .. } = work;
-        let names = sheet.clusters.names(&sheet.layout).into_iter();
-        *kept_impulses = names.zip(sheet.impulses(&state.potentials)).collect();
-        Ok(())
-    });
-}
-
-/// Gives the bubbles back what remeshing took of their volumes and the clusters what it took of their impulse, or takes what it gave. It
-/// is no motion in time: potentials stay but for the impulse.
-///
-/// A bubble that is too small or too thin for it is left to the next step.
-pub fn restore_volumes(world: &mut World) {
-    if !world.resource::<TopologyChanged>().0 {
-        return;
-    }
-    with_work(world, Stage::Topology, |world, work, _| {
-        let edge = world.resource::<MeshRules>().policy.edge;
-        lay_out(world, work);
-        work.sheet.measure(&work.state.positions);
-        let mut wanted = work.state.positions.clone();
-        // Errors are the next step's to report: here nothing has moved yet.
-        let way = work.sheet.meet_volumes(&mut wanted, &world.resource::<BubbleGas>().targets);
-        if way.is_ok_and(|way| way < LONGEST_WAY * edge) {
-            let mut surface = films::take(world);
-            // A vertex that is held up here is settled by the next step.
-            let _ = advance(&mut surface, &wanted, &MotionSettings::new(edge));
-            work.state.positions.clone_from(&surface.positions.0);
-            films::put_back(world, surface);
-        }
-        restore_impulses(world, work);
-        Ok(())
-    });
-}
-
-/// Gives clusters that are the same as before remeshing the impulse that they had. A film that burst took its own along.
-fn restore_impulses(world: &mut World, work: &mut SheetWork) {
-    let SheetWork { sheet, state, heads, kept_impulses, report, .. } = work;
-    let names = sheet.clusters.names(&sheet.layout);
-    if names.len() != kept_impulses.len()
-        || world.resource::<StepEvents>().0.iter().any(|event| event.kind == EventKind::Burst)
-    {
-        return;
-    }
-    let is_alone = names.len() == 1;
-    let of =
-        |name: &Region| kept_impulses.iter().find(|(kept, _)| is_alone || kept == name).map(|(_, impulse)| *impulse);
-    let Some(wanted) = names.iter().map(of).collect::<Option<Vec<DVec3>>>() else { return };
-    sheet.measure(&state.positions);
-    let correction = sheet.keep_impulse(&state.positions, &wanted, &mut state.potentials);
-    report.impulse_correction = report.impulse_correction.max(correction);
-    *world.resource_mut::<Potentials>() = Potentials::scattered(&sheet.layout, &state.potentials, heads);
+/// Volume of bubbles that are too small to be resolved, about two edges across, m^3.
+pub(super) fn unresolved_volume(policy: &froth_surface::Policy) -> f64 {
+    8.0 * policy.least_volume()
 }

@@ -59,5 +59,6 @@ pub fn observe_films(
     observables.record("evaluations", "1", f64::from(report.evaluations));
     observables.record("wire_iterations", "1", f64::from(report.wire_iterations));
     observables.record("volume_correction", "m", report.volume_correction);
+    observables.record("contact_loss", "J", report.contact_loss);
     observables.record("impulse_correction", "m/s", report.impulse_correction);
 }

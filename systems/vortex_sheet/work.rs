@@ -30,6 +30,8 @@ pub struct SheetWork {
     pub integration: Integration,
     /// Whether a substep is under way: its first evaluation has begun.
     pub is_under_way: bool,
+    /// Whether the integrator has said where the substep ends: what is left is to go there.
+    pub has_arrived: bool,
     /// Velocities of held vertices, m/s; zero elsewhere.
     pub wire_velocities: Vec<DVec3>,
     /// External forces per vertex, N.
@@ -38,6 +40,12 @@ pub struct SheetWork {
     pub impulses: Vec<DVec3>,
     /// Name and impulse per density of each free cluster where the step's motion left it, m^4/s.
     pub kept_impulses: Vec<(Region, DVec3)>,
+    /// Vertices that could not go all their way in the substep: their films touch others.
+    pub touching: Vec<bool>,
+    /// Whether the tracker changed the mesh in this step.
+    pub was_mended: bool,
+    /// Kinetic energy of the air before films met in this step, J.
+    pub energy_before: Option<f64>,
     /// What the step measured so far.
     pub report: StepReport,
 }
@@ -59,6 +67,8 @@ pub struct StepReport {
     pub limited: usize,
     /// Least fraction of its way that one went, dimensionless.
     pub least_fraction: f64,
+    /// Kinetic energy that was lost where films met, J.
+    pub contact_loss: f64,
 }
 
 impl SheetWork {
@@ -73,10 +83,14 @@ impl SheetWork {
             heads: Vec::new(),
             integration: Integration::default(),
             is_under_way: false,
+            has_arrived: false,
             wire_velocities: Vec::new(),
             forces: Vec::new(),
             impulses: Vec::new(),
             kept_impulses: Vec::new(),
+            touching: Vec::new(),
+            was_mended: false,
+            energy_before: None,
             report: StepReport::default(),
         })
     }
@@ -108,11 +122,21 @@ pub(super) fn with_work(
     }
 }
 
+/// Lets `work` do its part of the end of a substep, if the integrator has come to that.
+pub(super) fn on_arrival(
+    world: &mut World,
+    work: impl FnOnce(&mut World, &mut SheetWork, Substep) -> Result<(), SheetFault>,
+) {
+    if world.get_resource::<SheetWork>().is_some_and(|work| work.has_arrived) {
+        with_work(world, Stage::Deform, work);
+    }
+}
+
 /// Forgets what the step before took.
 pub fn begin_step(world: &mut World) {
     if let Some(mut work) = world.get_resource_mut::<SheetWork>() {
         work.report = StepReport { least_fraction: 1.0, ..StepReport::default() };
-        work.is_under_way = false;
+        (work.is_under_way, work.has_arrived) = (false, false);
     }
 }
 

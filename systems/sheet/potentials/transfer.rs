@@ -54,14 +54,17 @@ impl Potentials {
         let common: SmallVec<[Region; 4]> = first.iter().filter(in_all).map(|entry| entry.region).collect();
         let gauges: SmallVec<[Pair; 3]> = known.iter().map(|(table, _)| mean(table, &common)).collect();
         let value = |region: Region| {
+            let is_common = common.contains(&region);
             let (mut sum, mut whole) = ([0.0; 2], 0.0);
             for ((table, weight), gauge) in known.iter().zip(&gauges) {
                 let Some(entry) = find(table, region) else { continue };
+                // Of parents that are left over, those that count negative would leave next to nothing to divide by.
+                let weight = if is_common { *weight } else { weight.max(0.0) };
                 sum[0] += weight * (entry.potential - gauge[0]);
                 sum[1] += weight * (entry.head - gauge[1]);
                 whole += weight;
             }
-            (whole.abs() > 1e-12).then(|| SidePotential { region, potential: sum[0] / whole, head: sum[1] / whole })
+            (whole > 0.0).then(|| SidePotential { region, potential: sum[0] / whole, head: sum[1] / whole })
         };
         regions.iter().copied().filter_map(value).collect()
     }
@@ -137,6 +140,12 @@ impl Transfer for Potentials {
         let tables: SmallVec<[(VertexRow, Table); 12]> =
             touched.map(|v| (v, self.renewed(surface, v, change))).collect();
         tables.into_iter().for_each(|(v, table)| self.tables[v.index()] = table);
+        self.met.resize(self.tables.len(), false);
+        for blend in &change.blends {
+            let is_one_of_two =
+                blend.parents.len() == 2 && blend.parents.iter().any(|(parent, _)| *parent == blend.vertex);
+            self.met[blend.vertex.index()] |= is_one_of_two;
+        }
     }
 
     fn divide(&mut self, surface: &Surface, divisions: &[Division]) {
@@ -152,7 +161,9 @@ impl Transfer for Potentials {
     fn slide(&mut self, _: &Surface, _: &PerVertex<DVec3>) {}
 
     fn compact(&mut self, remap: &Remap) {
-        let mut rows = remap.vertices.iter();
-        self.tables.retain(|_| rows.next().is_some_and(Option::is_some));
+        let stay = || remap.vertices.iter().map(Option::is_some);
+        let (mut tables, mut met) = (stay(), stay());
+        self.tables.retain(|_| tables.next().unwrap_or(false));
+        self.met.retain(|_| met.next().unwrap_or(false));
     }
 }

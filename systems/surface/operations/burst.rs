@@ -1,8 +1,10 @@
-//! Burst of a film: the region behind it joins the one in front.
+//! Burst of a film: the region behind it joins the one in front. Bubbles too small for the mesh end the same way.
 //!
 //! Every face between the two regions goes, every other face of the region that burst takes the label of the one it joined. Curves
 //! where three films met become part of one film; vertices that keep no face vanish.
 //! Limits: the whole film goes at once; a hole with a retracting rim is not modelled.
+
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -31,6 +33,44 @@ impl Session<'_> {
     /// # Errors
     /// When the two share no film, or the outside or an open pocket would join a closed bubble.
     pub fn burst(&mut self, gone: Region, into: Region) -> Result<DVec3, BurstRefused> {
+        let place = self.join(gone, into)?;
+        self.counts.bursts += 1;
+        self.note(EventKind::Burst, place, [gone, into]);
+        Ok(place)
+    }
+
+    /// Lets bubbles that are smaller than any that the mesh can hold ([`Policy::least_volume`](crate::Policy::least_volume)) join the region that
+    /// they share most film with; gives who joined whom, `(gone, into)`.
+    pub fn dissolve_specks(&mut self) -> Vec<(Region, Region)> {
+        let (least, volumes) = (self.policy.least_volume(), self.surface.volumes());
+        let regions = self.surface.mesh.regions().into_iter();
+        let specks: Vec<Region> =
+            regions.filter(|region| !self.surface.is_open(*region) && volumes[region.index()] < least).collect();
+        let mut joined = Vec::new();
+        for gone in specks {
+            // The first of equals; a speck that another has joined may share film with no one any more.
+            let areas = self.areas_towards(gone).into_iter();
+            let Some((into, _)) = areas.reduce(|a, b| if b.1 > a.1 { b } else { a }) else { continue };
+            if let Ok(place) = self.join(gone, into) {
+                self.note(EventKind::Vanished, place, [gone]);
+                joined.push((gone, into));
+            }
+        }
+        joined
+    }
+
+    /// The regions that share film with a region, ascending, with the area of it, m^2.
+    fn areas_towards(&self, region: Region) -> BTreeMap<Region, f64> {
+        let mut areas = BTreeMap::new();
+        for row in self.faces_where(|face| face.borders(region)) {
+            let [back, front] = self.surface.mesh.face(row).labels();
+            *areas.entry(if back == region { front } else { back }).or_insert(0.0) += self.surface.area(row);
+        }
+        areas
+    }
+
+    /// Takes away the film between two regions, and names all that was `gone` `into`.
+    fn join(&mut self, gone: Region, into: Region) -> Result<DVec3, BurstRefused> {
         if gone == Region::OUTSIDE || self.surface.is_open(gone) && !self.surface.is_open(into) {
             return Err(BurstRefused::Outside(into));
         }
@@ -46,9 +86,7 @@ impl Session<'_> {
         for row in self.faces_where(|face| face.borders(gone) && !face.borders(into)) {
             self.surface.mesh.relabel(row, |label| if label == gone { into } else { label });
         }
-        self.counts.bursts += 1;
         self.commit(&plan);
-        self.note(EventKind::Burst, place, [gone, into]);
         Ok(place)
     }
 

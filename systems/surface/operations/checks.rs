@@ -74,7 +74,7 @@ pub(super) fn add_up_to_more_than_half_a_turn([a, b, c, d]: [DVec3; 4], margin: 
     let ((sine_c, cosine_c), (sine_d, cosine_d)) = (parts(c), parts(d));
     let sine = sine_c * cosine_d + cosine_c * sine_d;
     let cosine = cosine_c * cosine_d - sine_c * sine_d;
-    sine < margin * cosine.min(0.0)
+    sine < margin.tan() * cosine.min(0.0)
 }
 
 impl Session<'_> {

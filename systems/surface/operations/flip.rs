@@ -1,7 +1,8 @@
 //! Flips of edges towards the Delaunay triangulation: they raise the smallest angle, and with it the stable step.
 //!
-//! An edge with two faces is flipped if the angles opposite to it add up to more than 180 degrees, the two faces bend by less than
-//! 30 degrees, and nothing is in the way. Junctions, ghosts and edges on wires are left alone.
+//! An edge with two faces is flipped if the angles opposite to it add up to more than 180 degrees
+//! ([`Policy::flip_excess`](crate::Policy::flip_excess)), the two faces bend by less than 30 degrees, and nothing is in the way.
+//! Junctions, ghosts and edges on wires are left alone.
 
 use smallvec::SmallVec;
 
@@ -108,8 +109,8 @@ impl Session<'_> {
     }
 
     fn is_wanted(&self, ends_and_apexes: [VertexRow; 4]) -> bool {
-        const MARGIN: f64 = 1e-6;
-        checks::add_up_to_more_than_half_a_turn(ends_and_apexes.map(|v| self.surface.positions[v]), MARGIN)
+        let corners = ends_and_apexes.map(|v| self.surface.positions[v]);
+        checks::add_up_to_more_than_half_a_turn(corners, self.policy.flip_excess)
     }
 
     /// Whether the old or the new pair of faces bends too much.

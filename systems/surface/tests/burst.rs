@@ -5,8 +5,8 @@ mod scenes;
 
 use froth_surface::invariants::check_all;
 use froth_surface::operations::BurstRefused;
-use froth_surface::shapes::{disc, double_bubble, lattice};
-use froth_surface::{EventKind, Policy, Region, Surface};
+use froth_surface::shapes::{disc, double_bubble, icosphere, lattice};
+use froth_surface::{EventKind, LabelledTriangles, Policy, Region, Surface};
 use glam::DVec3;
 use scenes::{edges_with, operate, share_film};
 
@@ -84,5 +84,47 @@ fn an_open_film_bursts_with_the_ghosts_behind_it() {
     let pocket = surface.open[0].0;
     burst(&mut surface, pocket, 0).unwrap();
     check_all(&surface).unwrap();
+    assert_eq!(surface.mesh.face_count(), 0);
+}
+
+/// A bubble of radius 1, and far from it one that the mesh of edges `L` can hardly hold, of `times` the least volume.
+fn with_speck(times: f64) -> Surface {
+    let least = Policy::new(0.3).least_volume();
+    let radius = (times * least * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
+    let mut speck = icosphere(3.0 * DVec3::X, radius, 0.8 * radius);
+    // Flat faces hold less than the sphere.
+    let held = Surface::from_triangles(&speck).volumes()[1];
+    let scale = (times * least / held).cbrt();
+    speck.positions.iter_mut().for_each(|x| *x = 3.0 * DVec3::X + (*x - 3.0 * DVec3::X) * scale);
+    let mut both: LabelledTriangles = icosphere(DVec3::ZERO, 1.0, 0.3);
+    both.append(&speck);
+    Surface::from_triangles(&both)
+}
+
+#[test]
+fn a_bubble_smaller_than_the_mesh_can_hold_vanishes_and_a_larger_one_stays() {
+    for (times, regions) in [(0.99, 2), (1.01, 3)] {
+        let mut surface = with_speck(times);
+        let (joined, events) =
+            operate(&mut surface, &Policy::new(0.3), |session| (session.dissolve_specks(), session.events.clone()));
+        check_all(&surface).unwrap();
+        assert_eq!(surface.mesh.regions().len(), regions, "{times}");
+        assert_eq!(joined, if regions == 2 { vec![(Region(2), Region(0))] } else { vec![] });
+        assert!(
+            events.iter().all(|event| event.kind == EventKind::Vanished && event.place.distance(3.0 * DVec3::X) < 0.1)
+        );
+        assert_eq!(events.len(), joined.len());
+    }
+}
+
+#[test]
+fn a_speck_between_bubbles_joins_the_one_that_it_shares_most_film_with() {
+    let mut surface = Surface::from_triangles(&lattice(DVec3::ZERO, [2, 1, 1], 1.0, 0.5));
+    let volumes = surface.volumes();
+    let policy = Policy::new(3.0 * volumes[1].cbrt());
+    let joined = operate(&mut surface, &policy, |session| session.dissolve_specks());
+    check_all(&surface).unwrap();
+    // Both are specks for such a mesh: five of the six sides of each are towards the outside.
+    assert_eq!(joined, [(Region(1), Region(0)), (Region(2), Region(0))]);
     assert_eq!(surface.mesh.face_count(), 0);
 }

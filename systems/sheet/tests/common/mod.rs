@@ -175,7 +175,7 @@ impl Film {
         }
         self.heads.clone_from(&self.sheet.heads);
         if settings.keeps_volumes {
-            self.corrected = self.sheet.meet_volumes(&mut self.state.positions, &self.volumes).unwrap();
+            self.corrected = self.sheet.meet_volumes(&mut self.state.positions, &self.volumes, 0.0).unwrap();
         }
         self.sheet.measure(&self.state.positions);
         if let Some([_, after]) = kicks {

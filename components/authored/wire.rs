@@ -26,6 +26,10 @@ pub struct Wire {
     /// [`Name`](super::Name) of the film it holds. Default: every film it meets.
     #[serde(default)]
     pub holds: Option<String>,
+    /// Thickness of the film that is drawn out of the liquid on the wire, metres. Default: none is, and film that is drawn out is the film
+    /// that was there, stretched.
+    #[serde(default, deserialize_with = "range::positive_if_given")]
+    pub feeds: Option<Length>,
 }
 
 /// Where a wire runs.

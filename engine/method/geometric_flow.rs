@@ -20,7 +20,7 @@ use froth_systems::rows::state::StateRegistry;
 use froth_systems::stage::Stage;
 use froth_systems::tracker::films::MeshRules;
 use froth_systems::tracker::observe::observe_mesh;
-use froth_systems::tracker::{bursting, remeshing, wires};
+use froth_systems::tracker::{bursting, feeding, remeshing, wires};
 
 use super::{DiscretiseError, Method, on_mesh};
 use crate::scene::SceneHeader;
@@ -54,6 +54,8 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let propose = "let gas in and out, propose the films' motion (tension, volumes, wires), end the step where faces would go flat";
     plan.add(Stage::Dynamics, propose, motion::propose_motion, always());
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, always());
+    let feed = "wires feed the films that they hold";
+    plan.add(Stage::Topology, feed, feeding::feed_films, on_mesh::requires_feeding());
     plan.add(Stage::Topology, "burst films", bursting::burst_films, bursting());
     plan.add(Stage::Topology, "snap, split, collapse, flip, separate", remeshing::remesh, remeshing());
     plan.add(Stage::Topology, "gas follows the bubbles", gas::follow_bubbles, always());

@@ -26,6 +26,7 @@ use froth_systems::sampling::surface::Perturbation;
 use froth_systems::tracker::bursting::{self, BurstsDone, UnknownBubble};
 use froth_systems::tracker::discretise::{AuthoredFilm, AuthoredWire, DiscreteFilms, FilmFault};
 use froth_systems::tracker::events::{self, StepEvents};
+use froth_systems::tracker::feeding::{Feeds, LiquidFed};
 use froth_systems::tracker::films::{MeshRules, OpenRegions, TopologyChanged, TrackerState};
 use froth_systems::tracker::remeshing::{GasChanges, LiquidLost, NextVertexId, StepCounts};
 use froth_systems::tracker::wires::{Holders, Pins, WireLag};
@@ -56,6 +57,11 @@ pub(super) fn requires_remeshing() -> Requires {
 /// There are films.
 pub(super) fn requires_films() -> Requires {
     Requires::that("films that have not all burst", |world| world.resource::<SurfaceMesh>().vertex_rows() > 0)
+}
+
+/// Wires feed the films that they hold.
+pub(super) fn requires_feeding() -> Requires {
+    Requires::that("wires that feed their films", |world| !world.resource::<Feeds>().is_empty()).and(requires_films())
 }
 
 /// Counts and events are those of one step.
@@ -91,6 +97,7 @@ pub(super) fn register(world: &mut World, keep: &Remesh) -> Scale {
     StateRegistry::register::<BurstsDone>(world, "bursts_done");
     StateRegistry::register::<WireLag>(world, "wire_lag");
     StateRegistry::register::<LiquidLost>(world, "liquid_lost");
+    StateRegistry::register::<LiquidFed>(world, "liquid_fed");
     world.init_resource::<SurfaceMesh>();
     world.init_resource::<OpenRegions>();
     world.init_resource::<TrackerState>();
@@ -99,6 +106,7 @@ pub(super) fn register(world: &mut World, keep: &Remesh) -> Scale {
     world.init_resource::<BurstsDone>();
     world.init_resource::<WireLag>();
     world.init_resource::<LiquidLost>();
+    world.init_resource::<LiquidFed>();
     world.init_resource::<Pins>();
     world.init_resource::<StepCounts>();
     world.init_resource::<StepEvents>();
@@ -131,8 +139,9 @@ fn insert_rules(world: &mut World, keep: &Remesh) -> Scale {
     };
     let smoothing = if keep.smoothing { SMOOTHING } else { 0.0 };
     world.insert_resource(MeshRules { policy, remesh: keep.enabled, smoothing });
-    let holders = Holders::of(&films, &authored_wires(world));
-    world.insert_resource(holders);
+    let wires = authored_wires(world);
+    world.insert_resource(Holders::of(&films, &wires));
+    world.insert_resource(Feeds::of(&films, &wires));
     Scale { edge, size }
 }
 

@@ -2,7 +2,7 @@
 
 use bevy_ecs::world::World;
 use froth_components::authored::burst::Burst;
-use froth_components::authored::field::Gravity;
+use froth_components::authored::field::{Gravity, Wind};
 use froth_components::authored::method::{MethodChoice, VortexSheetSettings};
 use froth_components::authored::volumes::Volumes;
 use froth_components::kind::MeshVertex;
@@ -17,7 +17,7 @@ use froth_systems::stage::Stage;
 use froth_systems::tracker::films::{self, MeshRules};
 use froth_systems::tracker::followers::Followers;
 use froth_systems::tracker::observe::observe_mesh;
-use froth_systems::tracker::{bursting, remeshing};
+use froth_systems::tracker::{bursting, feeding, remeshing};
 use froth_systems::vortex_sheet::settings::SheetRules;
 use froth_systems::vortex_sheet::work::{self, SheetWork};
 use froth_systems::vortex_sheet::{
@@ -53,6 +53,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Forces, "clear external forces", forces::clear::<MeshVertex>, left());
     let gravity = Requires::component::<Gravity>("gravity").and(left());
     plan.add(Stage::Forces, "gravity", forces::pull_evenly_by_gravity::<MeshVertex>, gravity);
+    plan.add(Stage::Forces, "the wind blows", dynamics::let_wind_blow, Requires::component::<Wind>("a wind"));
     plan.add(Stage::Dynamics, "tension and forces change the potentials", dynamics::press_by_tension, left());
     let wires = Requires::that("films held by wires", has_wires).and(left());
     plan.add(Stage::Dynamics, "circulation on wires carries films along", dynamics::carry_by_wires, wires);
@@ -71,6 +72,8 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Deform, "write the potentials", arrival::write_potentials, left());
     plan.add(Stage::Advance, "fit pressures of bubbles", arrival::fit_pressures, left());
     plan.add(Stage::Advance, "note impulses of clusters", remeshed::note_impulses, remeshing());
+    let feed = "wires feed the films that they hold";
+    plan.add(Stage::Topology, feed, feeding::feed_films, on_mesh::requires_feeding());
     plan.add(Stage::Topology, "burst films", bursting::burst_films, bursting());
     plan.add(Stage::Topology, "snap, split, collapse, flip, separate", remeshing::remesh, remeshing());
     plan.add(Stage::Topology, "gas follows the bubbles", gas::follow_bubbles, always());

@@ -9,8 +9,8 @@ use froth_components::authored::shape::Shape;
 /// What geometric flow honours besides shapes. Its films have thickness, hence weight and colour, but no liquid that flows.
 const BY_GEOMETRIC_FLOW: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Drift", "Gravity"];
 
-/// What vortex sheets honour besides shapes. Films have weight; the air starts at rest.
-const BY_VORTEX_SHEET: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Gravity"];
+/// What vortex sheets honour besides shapes. Films have weight; the air starts at rest, or as the wind has it.
+const BY_VORTEX_SHEET: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Gravity", "Wind"];
 
 /// What takes a mesh, besides [`MeshShape`].
 const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes", "Stretch"];

@@ -16,6 +16,7 @@ pub mod bursting;
 pub mod columns;
 pub mod discretise;
 pub mod events;
+pub mod feeding;
 pub mod films;
 pub mod followers;
 pub mod observe;

@@ -5,6 +5,7 @@ use froth_surface::SurfaceMesh;
 use froth_surface::operations::Counts;
 
 use super::events::StepEvents;
+use super::feeding::{Feeds, LiquidFed};
 use super::remeshing::{LiquidLost, StepCounts};
 use crate::observe::Observables;
 
@@ -14,6 +15,8 @@ pub fn observe_mesh(
     counts: Res<StepCounts>,
     events: Res<StepEvents>,
     lost: Res<LiquidLost>,
+    fed: Res<LiquidFed>,
+    feeds: Res<Feeds>,
     mut observables: ResMut<Observables>,
 ) {
     observables.record("vertices", "1", mesh.vertex_rows() as f64);
@@ -32,5 +35,8 @@ pub fn observe_mesh(
         observables.record(name, "1", count as f64);
     }
     observables.record("liquid_lost", "m^3", lost.0);
+    if !feeds.is_empty() {
+        observables.record("liquid_fed", "m^3", fed.0);
+    }
     observables.record("events", "1", events.0.len() as f64);
 }

@@ -1,6 +1,8 @@
 //! What changes the potentials: tension and external forces, wires.
 
 use bevy_ecs::world::World;
+use froth_components::authored::field::Wind;
+use froth_components::clock::Clock;
 use froth_components::kind::MeshVertex;
 use froth_components::motion::{Pinned, Position};
 use glam::DVec3;
@@ -10,6 +12,19 @@ use super::work::{SheetWork, external_forces, forcing, with_work};
 use crate::rows::read_column;
 use crate::stage::Stage;
 use crate::tracker::wires::{Holders, WireLag};
+
+/// Looks up how fast the wind is.
+///
+/// Air that moves as a whole is seen from a frame that goes with it: there films and wires have the velocities that they have against
+/// the wind, and a wind that changes presses on both sides of a film alike.
+pub fn let_wind_blow(world: &mut World) {
+    let time = world.resource::<Clock>().time;
+    let wind = world.query::<&Wind>().iter(world).map(|wind| wind.velocity.at(time).si()).sum();
+    with_work(world, Stage::Forces, |_, work, _| {
+        work.wind = wind;
+        Ok(())
+    });
+}
 
 /// Works out the pressures that hold the films against tension and external forces; integrators that kick change the potentials by them.
 pub fn press_by_tension(world: &mut World) {
@@ -42,8 +57,9 @@ pub fn carry_by_wires(world: &mut World) {
     };
     with_work(world, Stage::Dynamics, |world, work, substep| {
         work.wire_velocities = velocities(world, substep.time, substep.length);
-        let SheetWork { sheet, state, wire_velocities, report, .. } = work;
-        sheet.hold(&state.positions, wire_velocities, &mut state.potentials)?;
+        let against_wind = work.wires_in_wind();
+        let SheetWork { sheet, state, report, .. } = work;
+        sheet.hold(&state.positions, &against_wind, &mut state.potentials)?;
         report.wire_iterations = report.wire_iterations.max(sheet.measured.wires.iterations);
         Ok(())
     });

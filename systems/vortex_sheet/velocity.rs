@@ -24,15 +24,17 @@ fn sliding_interval(world: &World) -> f64 {
 pub fn flow_by_biot_savart(world: &mut World) {
     with_work(world, Stage::Velocity, |world, work, substep| {
         let rules = *world.resource::<SheetRules>();
-        let SheetWork { sheet, state, wire_velocities, report, .. } = work;
+        let against_wind = work.wires_in_wind();
+        let SheetWork { sheet, state, wind, report, .. } = work;
         sheet.flow(
             &state.positions,
             &state.potentials,
-            wire_velocities,
+            &against_wind,
             rules.density,
             &rules.sliding,
             sliding_interval(world).max(substep.length),
         )?;
+        sheet.velocities.iter_mut().for_each(|w| *w += *wind);
         report.evaluations += 1;
         let velocities: Vec<Velocity> = sheet.velocities.iter().map(|w| Velocity(*w)).collect();
         fill_column::<MeshVertex, _>(world, &velocities);

@@ -60,6 +60,8 @@ pub struct Measured {
     pub film_energy: f64,
     /// Kinetic energy of the air, J.
     pub kinetic_energy: f64,
+    /// Energy of films and air where the flow was last worked out, J.
+    pub energy: f64,
     /// The solve on wires.
     pub wires: WireSolve,
 }
@@ -259,6 +261,7 @@ impl Sheet {
         }
         scheme.heads(films, potentials, velocities, heads);
         self.measured.kinetic_energy = density * energy;
+        self.measured.energy = self.measured.film_energy + self.measured.kinetic_energy;
         Ok(())
     }
 

@@ -16,8 +16,8 @@ use crate::rows::reduce::{ordered_max, ordered_sum};
 
 /// Records area, energies, impulse, speeds, and how the step went.
 ///
-/// The kinetic energy is that of the step's last evaluation, which comes before its last move: the sum over pairs is not worked out
-/// once more for a number. The impulse is that of the clusters that no wire holds.
+/// The kinetic energy, and the energy of films and air together, are those of the step's last evaluation, which comes before its last move:
+/// the sum over pairs is not worked out once more for a number. The impulse is that of the clusters that no wire holds.
 pub fn observe_films(
     vertices: Query<(&Area, &Velocity, &LiquidVolume), With<MeshVertex>>,
     work: Res<SheetWork>,
@@ -38,7 +38,7 @@ pub fn observe_films(
     observables.record("area", "m^2", area);
     observables.record("surface_energy", "J", film_energy);
     observables.record("kinetic_energy", "J", measured.kinetic_energy);
-    observables.record("energy", "J", film_energy + measured.kinetic_energy);
+    observables.record("energy", "J", measured.energy);
     let impulse: DVec3 = rules.density * work.sheet.impulses(&work.state.potentials).into_iter().sum::<DVec3>();
     observables.record("impulse_x", "kg m/s", impulse.x);
     observables.record("impulse_y", "kg m/s", impulse.y);

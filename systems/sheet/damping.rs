@@ -113,9 +113,9 @@ fn moderate(half: [f64; 3]) -> [f64; 3] {
 fn add_stiffness(layout: &Layout, weights: &[[f64; 3]], x: &[f64], sums: &mut [f64]) {
     for (panel, half) in layout.panels().iter().zip(weights) {
         let gamma = circulations(panel, x);
-        for k in 0..3 {
+        for (k, half) in half.iter().enumerate() {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            let flow = half[k] * (gamma[b] - gamma[a]);
+            let flow = half * (gamma[b] - gamma[a]);
             sums[panel.front[a] as usize] -= flow;
             sums[panel.back[a] as usize] += flow;
             sums[panel.front[b] as usize] += flow;

@@ -202,7 +202,7 @@ fn the_inertia_of_the_air_pinches_a_bubble_off_behind_a_ring() {
         simulation.step().unwrap();
         assert!(simulation.time() < 0.25, "no bubble yet");
     }
-    assert!(simulation.time() > 0.1 && simulation.observables().get("volume_1").is_none_or(|volume| volume > 0.0));
+    assert!(simulation.time() > 0.1, "too soon: {} s", simulation.time());
 }
 
 #[test]
@@ -211,15 +211,17 @@ fn films_that_meet_and_part_give_the_air_no_energy() {
     let scene: String = scene.lines().filter(|line| !line.contains("Wire") && !line.contains("Catenoid")).collect();
     let scene = scene.replace("[ Gravity((0.0, -1.0, 0.0)) ],", "");
     let mut simulation = Simulation::from_scene_text(&scene).unwrap();
-    let (mut last, mut first) = (f64::INFINITY, None);
+    let (mut last, mut first, mut lost) = (f64::INFINITY, None, 0.0);
     while simulation.time() < 0.05 {
         simulation.step().unwrap();
-        let energy = simulation.observables().get("energy").unwrap();
+        let observed = |name: &str| simulation.observables().get(name).unwrap();
         // The mesh is coarse, and T1s make film; what contacts once gave the air was many times as much.
-        let swing = 0.03 * *first.get_or_insert(energy);
-        assert!(energy < last + swing, "{last:e} to {energy:e} at {}", simulation.time());
-        last = last.min(energy);
+        let swing = 0.03 * *first.get_or_insert(observed("energy"));
+        assert!(observed("energy") < last + swing, "{last:e} to {:e} at {}", observed("energy"), simulation.time());
+        last = last.min(observed("energy"));
+        lost += observed("contact_loss");
     }
+    assert!(lost > 0.0, "films have met or parted");
 }
 
 #[test]

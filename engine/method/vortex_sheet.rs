@@ -65,8 +65,8 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Deform, "let gas in and out of the bubbles", motion::fill_bubbles, filling);
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, left());
     plan.add(Stage::Deform, "tension and forces change the potentials again", arrival::kick_again, left());
-    plan.add(Stage::Deform, "keep the impulse of free clusters", arrival::keep_impulse, left());
     plan.add(Stage::Deform, "films in the way of others come to rest", contacts::rest_contacts, left());
+    plan.add(Stage::Deform, "keep the impulse of free clusters", arrival::keep_impulse, left());
     let damping = Requires::that("damping or diffusivity above 0", is_damped).and(left());
     plan.add(Stage::Deform, "circulation diffuses and fades", arrival::damp, damping);
     plan.add(Stage::Deform, "write the potentials", arrival::write_potentials, left());

@@ -7,7 +7,8 @@
 //! # Discretisation
 //! `M_v` has rank 1 on a film, 2 on a Plateau border, 3 where borders meet; eigenvalues below [`RANK_CUT`] of the largest are
 //! dropped, so that nearly flat borders count as films. Where a film is folded over itself its area vectors cancel, and dividing by
-//! what is left would make velocities of noise: there `M` counts as that of a fold of [`FOLD_CUT`].
+//! what is left would make velocities of noise: inside films `M` counts as at least that of a fold of [`FOLD_CUT`]; at borders directions in
+//! which it is below [`RANK_CUT`] of the square of the area are dropped.
 
 use glam::{DMat3, DVec3};
 

@@ -77,25 +77,43 @@ impl Clusters {
         sums
     }
 
-    /// Gives each free cluster its impulse per density (m^4/s) back; the largest uniform velocity that this took, m/s.
+    /// Which free clusters have any of the vertices that are marked; none where `marks` is empty.
+    #[must_use]
+    pub fn with_any(&self, marks: &[bool]) -> Vec<bool> {
+        let mut found = vec![false; self.0.count];
+        for (mark, cluster) in marks.iter().zip(&self.0.of_vertex) {
+            if let (true, Some(cluster)) = (mark, cluster) {
+                found[*cluster as usize] = true;
+            }
+        }
+        found
+    }
+
+    /// Gives each free cluster its impulse per density (m^4/s) back, and those that are `together` the sum of theirs; the largest uniform
+    /// velocity that this took, m/s.
     pub fn correct(
         &self,
         layout: &Layout,
         geometry: &Geometry,
         positions: &[DVec3],
         wanted: &[DVec3],
+        together: &[bool],
         potentials: &mut [f64],
     ) -> f64 {
+        let first = together.iter().position(|together| *together).unwrap_or_default();
+        let group = |cluster: usize| if together[cluster] { first } else { cluster };
         let mut matrices = vec![DMat3::ZERO; self.0.count];
-        let mut lacks: Vec<DVec3> = wanted.iter().map(|wanted| -*wanted).collect();
-        // Places from one of the cluster's own: far from the origin sums would lose digits.
+        let mut lacks = vec![DVec3::ZERO; self.0.count];
+        wanted.iter().enumerate().for_each(|(cluster, wanted)| lacks[group(cluster)] -= *wanted);
+        // Places from one of the group's own: far from the origin sums would lose digits.
         let mut origins = vec![None; self.0.count];
         self.for_each_side(layout, |cluster, v, side| {
-            let origin = *origins[cluster].get_or_insert(positions[v]);
+            let group = group(cluster);
+            let origin = *origins[group].get_or_insert(positions[v]);
             let n = geometry.gradients[side];
-            lacks[cluster] += n * potentials[side];
+            lacks[group] += n * potentials[side];
             if is_of_bubble(layout, side) {
-                matrices[cluster] += outer(n, positions[v] - origin);
+                matrices[group] += outer(n, positions[v] - origin);
             }
         });
         let solve = |(matrix, lack): (&DMat3, &DVec3)| {
@@ -104,9 +122,10 @@ impl Clusters {
         };
         let gains: Vec<DVec3> = matrices.iter().zip(&lacks).map(solve).collect();
         self.for_each_side(layout, |cluster, v, side| {
-            let origin = origins[cluster].unwrap_or_default();
+            let group = group(cluster);
+            let origin = origins[group].unwrap_or_default();
             if is_of_bubble(layout, side) {
-                potentials[side] -= gains[cluster].dot(positions[v] - origin);
+                potentials[side] -= gains[group].dot(positions[v] - origin);
             }
         });
         gains.iter().map(|c| c.length()).fold(0.0, f64::max)

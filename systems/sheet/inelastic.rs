@@ -2,10 +2,10 @@
 //!
 //! # Equation
 //! Kinetic energy per density is `K = phi . F / 2`, with the fluxes `F` linear in the potentials. Descent in `phi` at the vertices in contact,
-//! which takes the motion through the films there away, stops where `K` is what it may be; if it may be nothing, where those films rest:
-//! that is the impulse of a perfectly inelastic contact (Carnot's theorem). Along `d` it is the smaller root of
-//! `K - tau (d . F) + tau^2 (d . F_d) / 2 = most`, and where there is none, the vertex of the parabola, and again, along conjugate
-//! directions preconditioned by `1 / A`.
+//! which takes the motion through the films there away, stops where `K` is what it may be; if it may be nothing, where those films rest.
+//! Along `d` it is the smaller root of `K - tau (d . F) + tau^2 (d . F_d) / 2 = most`, and where there is none, the vertex of the
+//! parabola, and again, along conjugate directions preconditioned by `1 / A`.
+//! It is rest against the air far away. What drifts as a whole gets its drift back with its [impulse](crate::impulse).
 //!
 //! # Source
 //! This scheme's own. Where films merge, the circulations that meet differ; what no film carries any more would stay behind in the air as a

@@ -13,6 +13,7 @@
 //! | from potentials to motion | [`flow`] (with [`froth_biot_savart`]), [`sliding`] |
 //! | from forces to potentials | [`tension`], [`convection`], [`damping`] |
 //! | what holds | [`wires`], [`impulse`] |
+//! | films in contact | [`inelastic`] |
 //! | how linear systems are solved | [`conjugate_gradient`] |
 //! | all of it in order | [`sheet`], [`integration`], [`step_length`] |
 //!

@@ -34,7 +34,7 @@ type Table = SmallVec<[SidePotential; 3]>;
 #[cfg_attr(feature = "bevy_ecs", derive(bevy_ecs::resource::Resource))]
 pub struct Potentials {
     tables: Vec<Table>,
-    /// Vertices that became one with another since the potentials were scattered.
+    /// Vertices of films that met or parted since the potentials were scattered.
     #[serde(skip)]
     met: Vec<bool>,
 }
@@ -84,7 +84,8 @@ impl Potentials {
         Some(self.potential(vertex, j)? - self.potential(vertex, i)?)
     }
 
-    /// Whether the vertex became one with another since the potentials were scattered: its circulation is the mean of two.
+    /// Whether films have met or parted at the vertex, or beside it, since the potentials were scattered: circulations there are means of
+    /// such as did not fit together.
     #[must_use]
     pub fn has_met(&self, vertex: VertexRow) -> bool {
         self.met.get(vertex.index()).copied().unwrap_or(false)

@@ -9,12 +9,14 @@
 //! | integrator | [`Integration`](crate::Integration) | rates to states |
 //! | volumes | [`Sheet::meet_volumes`] | projection by the volume gradients |
 //! | impulse | [`Sheet::keep_impulse`] | free clusters |
+//! | contacts | [`Sheet::calm`] | films in contact give up energy |
+//! | damping | [`Sheet::damp`] | diffusion of circulation |
 //!
 //! What tension, wires and Biot-Savart come to on a mesh is the [discretisation](crate::discretisation)'s to say.
 
 use std::collections::BTreeMap;
 
-use froth_biot_savart::{PairSum, PanelSums, SheetKernel, Summation};
+use froth_biot_savart::{PairSum, SheetKernel, Summation};
 use froth_surface::calculus::volume::{volume_gradients, volumes as measured_volumes};
 use froth_surface::calculus::{Incidence, Weights};
 use froth_surface::flow::FlowError;
@@ -265,7 +267,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// Lets the potentials diffuse, `diffusivity` in m^2/s, for `dt` seconds.
+    /// Lets circulation diffuse, `diffusivity` in m^2/s, for `dt` seconds.
     ///
     /// # Errors
     /// [`SheetError::DampingNotSolved`].
@@ -294,9 +296,9 @@ impl Sheet {
     fn fluxes(&mut self, positions: &[DVec3], potentials: &[f64]) -> Result<Vec<f64>, SheetError> {
         self.place_panels();
         flow::strengths(&self.layout, positions, potentials, &mut self.strengths);
-        let (mut sums, mut fluxes) = (PanelSums::default(), Vec::new());
-        self.pairs.potentials_and_gradients(&self.strengths, &mut sums)?;
-        flow::fluxes(&self.layout, positions, &sums.potentials, &mut fluxes);
+        let (mut vector_potentials, mut fluxes) = (Vec::new(), Vec::new());
+        self.pairs.potentials(&self.strengths, &mut vector_potentials)?;
+        flow::fluxes(&self.layout, positions, &vector_potentials, &mut fluxes);
         Ok(fluxes)
     }
 
@@ -339,10 +341,17 @@ impl Sheet {
         sums.into_iter().map(|force| force * (dt / forcing.density)).collect()
     }
 
-    /// Gives free clusters the impulse per density (m^4/s) that they shall have, at the shape last measured; the largest
-    /// velocity that this took, m/s.
-    pub fn keep_impulse(&self, positions: &[DVec3], wanted: &[DVec3], potentials: &mut [f64]) -> f64 {
-        self.clusters.correct(&self.layout, &self.geometry, positions, wanted, potentials)
+    /// Gives free clusters the impulse per density (m^4/s) that they shall have, at the shape last measured; those with a vertex in `touching`
+    /// have theirs together. The largest velocity that this took, m/s.
+    pub fn keep_impulse(
+        &self,
+        positions: &[DVec3],
+        wanted: &[DVec3],
+        touching: &[bool],
+        potentials: &mut [f64],
+    ) -> f64 {
+        let together = self.clusters.with_any(touching);
+        self.clusters.correct(&self.layout, &self.geometry, positions, wanted, &together, potentials)
     }
 
     /// Moves positions by the least motion that gives every closed region its volume (m^3), and says how far the farthest
@@ -365,16 +374,16 @@ impl Sheet {
         let before = positions.to_vec();
         let mut present = Vec::new();
         loop {
-            let missed = match self.project(positions, &targets) {
+            let refusal = match self.project(positions, &targets) {
                 Ok(()) => break,
-                Err(FlowError::VolumeNotReached { region, error, .. }) if error.is_finite() => region,
-                Err(other) => return Err(other.into()),
+                Err(refusal) => refusal,
             };
-            let row = self.incidence.closed().binary_search(&missed).unwrap_or_default();
+            let FlowError::VolumeNotReached { region, .. } = refusal else { return Err(refusal.into()) };
+            let row = self.incidence.closed().binary_search(&region).expect("invariant: what is missed is closed");
             positions.copy_from_slice(&before);
             measured_volumes(&self.incidence, positions, &mut present);
             if !(targets[row] < unresolved) || targets[row] == present[row] {
-                return self.project(positions, &targets).map(|()| 0.0).map_err(SheetError::from);
+                return Err(refusal.into());
             }
             targets[row] = present[row];
         }

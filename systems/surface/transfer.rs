@@ -54,6 +54,8 @@ pub struct Change {
     pub fused: SmallVec<[(Region, Region, Region); 2]>,
     /// A region that was joined to another: `(gone, into)`.
     pub joined: Option<(Region, Region)>,
+    /// Whether films met or parted, or a neck or window between films of the same regions closed or opened.
+    pub meets: bool,
 }
 
 /// Data on vertices.

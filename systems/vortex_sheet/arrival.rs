@@ -24,13 +24,13 @@ pub fn kick_again(world: &mut World) {
     });
 }
 
-/// Gives every free cluster the impulse that it had, and what external forces have given it since.
+/// Gives every free cluster the impulse that it had, and what external forces have given it since; clusters in contact have theirs together.
 pub fn keep_impulse(world: &mut World) {
     on_arrival(world, |world, work, substep| {
-        let SheetWork { sheet, state, forces, impulses, report, .. } = work;
+        let SheetWork { sheet, state, forces, impulses, touching, report, .. } = work;
         let gained = sheet.impulse_gained(&forcing(world, forces), substep.length);
         let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
-        let correction = sheet.keep_impulse(&state.positions, &wanted, &mut state.potentials);
+        let correction = sheet.keep_impulse(&state.positions, &wanted, touching, &mut state.potentials);
         report.impulse_correction = report.impulse_correction.max(correction);
         Ok(())
     });

@@ -1,4 +1,4 @@
-//! Films in contact: what they cannot do, the air does not do either, and a contact makes the air no faster than it was.
+//! Films in contact: what they cannot do, the air does not do either, and no contact makes the air faster than it was.
 //!
 //! The mathematics is [`froth_sheet::inelastic`].
 
@@ -9,6 +9,7 @@ use froth_surface::VertexRow;
 use super::settings::SheetRules;
 use super::work::{SheetWork, on_arrival, with_work};
 use crate::stage::Stage;
+use crate::tracker::events::StepEvents;
 use crate::tracker::remeshing::StepCounts;
 
 /// Brings films to rest where others are in their way: else the air would go on driving them, and gain energy without end.
@@ -32,30 +33,27 @@ pub fn rest_contacts(world: &mut World) {
 
 /// Works out the air's energy where the tracker joined or parted films: as it was before, since the sheet does not know of it yet.
 pub fn recall_energy(world: &mut World) {
-    let counts = world.resource::<StepCounts>().0;
+    let (counts, has_events) = (world.resource::<StepCounts>().0, !world.resource::<StepEvents>().0.is_empty());
     with_work(world, Stage::Topology, |world, work, _| {
         let density = world.resource::<SheetRules>().density;
         let SheetWork { sheet, state, energy_before, .. } = work;
-        let have_met = counts.snaps + counts.separations > 0;
+        let have_met = counts.snaps + counts.separations > 0 || has_events;
         *energy_before =
             have_met.then(|| sheet.kinetic_energy(&state.positions, &state.potentials, density)).transpose()?;
         Ok(())
     });
 }
 
-/// Slows films down around vertices that became one with others until the air has no more energy than before.
+/// Slows films down around the places where they met or parted until the air has no more energy than before.
 pub fn calm_contacts(world: &mut World) {
     with_work(world, Stage::Topology, |world, work, _| {
         let SheetWork { sheet, state, heads, energy_before, report, .. } = work;
         let Some(most) = energy_before.take() else { return Ok(()) };
         let density = world.resource::<SheetRules>().density;
         let mut potentials = world.resource_mut::<Potentials>();
-        let has_met = |v: &u32| potentials.has_met(VertexRow(*v));
-        let mut chosen = vec![false; sheet.layout.vertex_rows()];
-        for panel in sheet.layout.panels().iter().filter(|panel| panel.corners.iter().any(has_met)) {
-            panel.corners.iter().for_each(|v| chosen[*v as usize] = true);
-        }
-        report.contact_loss += sheet.calm(&state.positions, &chosen, density, most, &mut state.potentials)?;
+        let rows = 0..sheet.layout.vertex_rows() as u32;
+        let met: Vec<bool> = rows.map(|v| potentials.has_met(VertexRow(v))).collect();
+        report.contact_loss += sheet.calm(&state.positions, &met, density, most, &mut state.potentials)?;
         *potentials = Potentials::scattered(&sheet.layout, &state.potentials, heads);
         Ok(())
     });

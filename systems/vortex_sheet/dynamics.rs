@@ -2,7 +2,6 @@
 
 use bevy_ecs::world::World;
 use froth_components::authored::field::Wind;
-use froth_components::clock::Clock;
 use froth_components::kind::MeshVertex;
 use froth_components::motion::{Pinned, Position};
 use glam::DVec3;
@@ -18,10 +17,9 @@ use crate::tracker::wires::{Holders, WireLag};
 /// Air that moves as a whole is seen from a frame that goes with it: there films and wires have the velocities that they have against
 /// the wind, and a wind that changes presses on both sides of a film alike.
 pub fn let_wind_blow(world: &mut World) {
-    let time = world.resource::<Clock>().time;
-    let wind = world.query::<&Wind>().iter(world).map(|wind| wind.velocity.at(time).si()).sum();
-    with_work(world, Stage::Forces, |_, work, _| {
-        work.wind = wind;
+    with_work(world, Stage::Forces, |world, work, substep| {
+        let mut winds = world.query::<&Wind>();
+        work.wind = winds.iter(world).map(|wind| wind.velocity.at(substep.time).si()).sum();
         Ok(())
     });
 }

@@ -2,11 +2,13 @@
 //!
 //! | stage | system | file |
 //! |---|---|---|
-//! | `Clock` | capillary waves and speed limit steps and substeps | `step_length` |
+//! | `Clock` | capillary waves, speed and strain limit steps and substeps | `step_length` |
 //! | `Geometry` | area vectors, volume gradients; columns of shape | `geometry` |
+//! | `Forces` | wind: everything else is seen from a frame that goes with it | `dynamics` |
 //! | `Dynamics` | tension and external forces change the potentials | `dynamics` |
 //! | `Dynamics` | circulation on wires, so that films go with them | `dynamics` |
-//! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection; a substep that turns out too long | `velocity` |
+//! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection | `velocity` |
+//! | `Velocity` | a substep that turns out too long is taken again | `step_length` |
 //! | `Deform` | integrator; gas; films go where it says, as far as none touches another | `motion` |
 //! | `Deform` | at the end of a substep: second kick, impulse, damping | `arrival` |
 //! | `Deform`, `Topology` | films in contact lose energy | `contacts` |

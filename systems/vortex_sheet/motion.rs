@@ -7,15 +7,20 @@ use froth_components::motion::Position;
 use froth_sheet::{Next, Rates};
 use froth_surface::Surface;
 use froth_surface::motion::{MotionSettings, advance};
+use glam::DVec3;
 
 use super::settings::SheetRules;
 use super::work::{SheetFault, SheetWork, Substep, on_arrival, with_work};
 use crate::bubbles::gas::BubbleGas;
+use crate::clock::StepLimits;
 use crate::plan::AnotherPass;
 use crate::rows::fill_column;
 use crate::stage::Stage;
 use crate::tracker::films::{self, MeshRules};
 use crate::tracker::wires::{MOST_STOPS, WireLag};
+
+/// Part of its way that a vertex may fall short of by rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Hands the rates to the integrator, which asks for rates elsewhere or says where the substep ends.
 pub fn integrate(world: &mut World) {
@@ -62,7 +67,8 @@ pub fn move_films(world: &mut World) {
 }
 
 fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mut Surface) -> Result<(), SheetFault> {
-    let SheetWork { sheet, state, wire_velocities, touching, report, .. } = work;
+    let SheetWork { sheet, state, integration, wire_velocities, touching, report, .. } = work;
+    let start = &integration.start().positions;
     let held = surface.pinned.iter().zip(wire_velocities).zip(&surface.positions.0);
     for (proposed, ((_, u), x)) in state.positions.iter_mut().zip(held).filter(|(_, ((held, _), _))| **held) {
         *proposed = *x + *u * substep.length;
@@ -72,14 +78,18 @@ fn carry(world: &mut World, work: &mut SheetWork, substep: Substep, surface: &mu
     let correction = sheet.meet_volumes(&mut state.positions, targets, unresolved_volume(&policy))?;
     report.volume_correction = report.volume_correction.max(correction);
     let went = advance(surface, &state.positions, &MotionSettings::new(policy.edge));
-    let ways = surface.positions.0.iter().zip(&state.positions).zip(&surface.pinned.0);
+    let whole = went.pinned_fraction * (1.0 - ROUNDING);
+    let ways = surface.positions.0.iter().zip(&state.positions).zip(start).zip(&surface.pinned.0);
+    let is_held_up = |x: &DVec3, proposed: &DVec3, from: &DVec3| x.distance(*from) < whole * proposed.distance(*from);
     touching.clear();
-    touching.extend(ways.map(|((x, proposed), held)| !held && x != proposed));
+    touching.extend(ways.map(|(((x, proposed), from), held)| !held && is_held_up(x, proposed, from)));
     report.limited = report.limited.max(went.limited_vertices);
     report.least_fraction = report.least_fraction.min(went.least_fraction).min(went.pinned_fraction);
     if went.limited_vertices > 0 || went.pinned_fraction < 1.0 {
         // Films that meet are the tracker's to join; until then the air would go on driving them at each other.
         world.resource_mut::<Clock>().end_after(report.substeps);
+        let length = world.resource::<Clock>().step_length;
+        world.resource_mut::<StepLimits>().propose("contact", length);
     }
     let patience = MOST_STOPS * world.resource::<Clock>().substeps.max(1);
     let mut lag = world.resource_mut::<WireLag>();

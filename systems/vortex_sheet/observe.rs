@@ -17,7 +17,8 @@ use crate::rows::reduce::{ordered_max, ordered_sum};
 /// Records area, energies, impulse, speeds, and how the step went.
 ///
 /// The kinetic energy, and the energy of films and air together, are those of the step's last evaluation, which comes before its last move:
-/// the sum over pairs is not worked out once more for a number. The impulse is that of the clusters that no wire holds.
+/// the sum over pairs is not worked out once more for a number. The impulse is that of the clusters that no wire holds. In a wind both are
+/// those against it.
 pub fn observe_films(
     vertices: Query<(&Area, &Velocity, &LiquidVolume), With<MeshVertex>>,
     work: Res<SheetWork>,

@@ -1,7 +1,7 @@
 //! What remeshing may not change: volumes of bubbles, impulses of clusters. It is no motion in time: potentials stay but for the impulse.
 
 use bevy_ecs::world::World;
-use froth_sheet::Potentials;
+use froth_sheet::{Potentials, Sheet};
 use froth_surface::motion::{MotionSettings, advance};
 use froth_surface::{EventKind, Region};
 use glam::DVec3;
@@ -56,23 +56,42 @@ pub fn restore_volumes(world: &mut World) {
     });
 }
 
-/// Gives clusters that are the same as before remeshing the impulse that they had. A film that burst took its own along.
+/// Gives clusters the impulse that they had before remeshing: each its own where they are the same, all together where free clusters joined or
+/// parted and nothing holds any. A film that burst took its own along.
 pub fn restore_impulses(world: &mut World) {
     let has_burst = world.resource::<StepEvents>().0.iter().any(|event| event.kind == EventKind::Burst);
     with_work(world, Stage::Topology, |world, work, _| {
-        let SheetWork { sheet, state, heads, kept_impulses, was_mended, report, .. } = work;
-        let names = sheet.clusters.names(&sheet.layout);
-        if !*was_mended || has_burst || names.len() != kept_impulses.len() {
+        if !work.was_mended || has_burst {
             return Ok(());
         }
-        let is_alone = names.len() == 1;
-        let of = |name: &Region| {
-            kept_impulses.iter().find(|(kept, _)| is_alone || kept == name).map(|(_, impulse)| *impulse)
-        };
-        let Some(wanted) = names.iter().map(of).collect::<Option<Vec<DVec3>>>() else { return Ok(()) };
-        let correction = sheet.keep_impulse(&state.positions, &wanted, &mut state.potentials);
+        let SheetWork { sheet, state, heads, kept_impulses, report, .. } = work;
+        let Some(Kept { impulses, touching }) = kept(sheet, kept_impulses) else { return Ok(()) };
+        let correction = sheet.keep_impulse(&state.positions, &impulses, &touching, &mut state.potentials);
         report.impulse_correction = report.impulse_correction.max(correction);
         *world.resource_mut::<Potentials>() = Potentials::scattered(&sheet.layout, &state.potentials, heads);
         Ok(())
     });
+}
+
+/// Impulses per density that clusters shall have, m^4/s, and the vertices of those that have theirs together.
+struct Kept {
+    impulses: Vec<DVec3>,
+    touching: Vec<bool>,
+}
+
+fn kept(sheet: &Sheet, before: &[(Region, DVec3)]) -> Option<Kept> {
+    let names = sheet.clusters.names(&sheet.layout);
+    let is_alone = names.len() == 1 && before.len() == 1;
+    let of = |name: &Region| before.iter().find(|(kept, _)| is_alone || kept == name).map(|(_, impulse)| *impulse);
+    if names.len() == before.len()
+        && let Some(impulses) = names.iter().map(of).collect()
+    {
+        return Some(Kept { impulses, touching: Vec::new() });
+    }
+    if names.is_empty() || sheet.wires.held().contains(&true) {
+        return None;
+    }
+    let mut impulses = vec![DVec3::ZERO; names.len()];
+    impulses[0] = before.iter().map(|(_, impulse)| *impulse).sum();
+    Some(Kept { impulses, touching: vec![true; sheet.layout.vertex_rows()] })
 }

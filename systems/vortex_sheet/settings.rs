@@ -22,7 +22,7 @@ pub struct SheetRules {
     pub courant: f64,
     /// Part of an edge length that a vertex may move in one step.
     pub cfl: f64,
-    /// Diffusivity of the potentials, m^2/s.
+    /// Diffusivity of circulation, m^2/s.
     pub diffusivity: f64,
     /// Rate at which circulation fades, 1/s.
     pub damping: f64,

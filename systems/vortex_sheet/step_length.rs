@@ -15,7 +15,7 @@ use froth_sheet::{Potentials, geometry};
 use froth_surface::SurfaceMesh;
 
 use super::settings::SheetRules;
-use super::work::{SheetWork, with_work};
+use super::work::{SheetWork, forcing, with_work};
 use crate::clock::StepLimits;
 use crate::plan::AnotherPass;
 use crate::rows::reduce::ordered_max;
@@ -77,9 +77,11 @@ pub fn shorten_substep(world: &mut World) {
         if !(part * TOO_FAR < 1.0) {
             return Ok(());
         }
-        let SheetWork { sheet, state, heads, integration, is_under_way, report, .. } = work;
+        let SheetWork { sheet, state, heads, forces, integration, is_under_way, report, .. } = work;
         state.positions.clone_from(&integration.start().positions);
         world.resource::<Potentials>().gather(&sheet.layout, &mut state.potentials, heads);
+        sheet.measure(&state.positions);
+        sheet.load(&state.positions, &forcing(world, forces));
         *is_under_way = false;
         report.substeps -= 1;
         let start: Vec<Position> = state.positions.iter().map(|x| Position(*x)).collect();
@@ -91,6 +93,8 @@ pub fn shorten_substep(world: &mut World) {
             (clock.step_length, clock.substeps) = (substep.length * part.max(LEAST_PART), 1);
             world.resource_mut::<AnotherPass>().0 = true;
         }
+        let length = world.resource::<Clock>().step_length;
+        world.resource_mut::<StepLimits>().propose("speed within the step", length);
         Ok(())
     });
 }

@@ -42,7 +42,7 @@ pub struct SheetWork {
     pub impulses: Vec<DVec3>,
     /// Name and impulse per density of each free cluster where the step's motion left it, m^4/s.
     pub kept_impulses: Vec<(Region, DVec3)>,
-    /// Vertices that could not go all their way in the substep: their films touch others.
+    /// Vertices that went less far in the substep than the motion as a whole: something is in their way.
     pub touching: Vec<bool>,
     /// Whether the tracker changed the mesh in this step.
     pub was_mended: bool,

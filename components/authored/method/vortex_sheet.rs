@@ -32,7 +32,7 @@ pub struct VortexSheetSettings {
     /// Part of an edge length that a vertex may move in one step, above 0 to 0.5; the mesh is mended between steps. Default 0.25.
     #[serde(deserialize_with = "range::half_at_most")]
     pub cfl: Ratio,
-    /// Kinematic diffusivity of the potentials over the films, m^2/s; a mode of degree `l` on a bubble of radius `R` fades at
+    /// Kinematic diffusivity of circulation over the films, m^2/s; a mode of degree `l` on a bubble of radius `R` fades at
     /// `D l (l + 1) / (2 R^2)`. Default 0.
     #[serde(deserialize_with = "range::not_negative")]
     pub diffusivity: Viscosity,

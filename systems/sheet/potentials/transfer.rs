@@ -141,10 +141,8 @@ impl Transfer for Potentials {
             touched.map(|v| (v, self.renewed(surface, v, change))).collect();
         tables.into_iter().for_each(|(v, table)| self.tables[v.index()] = table);
         self.met.resize(self.tables.len(), false);
-        for blend in &change.blends {
-            let is_one_of_two =
-                blend.parents.len() == 2 && blend.parents.iter().any(|(parent, _)| *parent == blend.vertex);
-            self.met[blend.vertex.index()] |= is_one_of_two;
+        if change.meets {
+            change.areas.iter().for_each(|area| self.met[area.vertex.index()] = true);
         }
     }
 

@@ -82,6 +82,27 @@ fn two_clusters_keep_their_own_impulses() {
 }
 
 #[test]
+fn clusters_in_contact_share_what_they_had_and_films_that_are_stopped_cost_energy_alone() {
+    let mut film = Film::new(&sphere_lattice([2, 1, 1], 1.0, 0.5, 0.35), Settings::default());
+    film.set_potential(Region(1), |x| 0.3 * x.x + 0.1 * x.y);
+    film.set_potential(Region(2), |x| -0.2 * x.x);
+    let start: DVec3 = film.sheet.impulses(&film.state.potentials).into_iter().sum();
+    let [before, _] = film.energies();
+    let near: Vec<bool> = film.state.positions.iter().map(|x| x.x.abs() < 0.4).collect();
+    assert!(near.contains(&true) && near.contains(&false));
+    let positions = film.state.positions.clone();
+    let wanted = film.sheet.impulses(&film.state.potentials);
+    let lost = film.sheet.calm(&positions, &near, 1.0, 0.0, &mut film.state.potentials).unwrap();
+    let [after, _] = film.energies();
+    assert!(lost > 0.01 * before && (before - lost - after).abs() < 1e-9 * before, "{before} {lost} {after}");
+    film.sheet.keep_impulse(&positions, &wanted, &near, &mut film.state.potentials);
+    let now = film.sheet.impulses(&film.state.potentials);
+    let sum: DVec3 = now.iter().sum();
+    assert!(sum.distance(start) < 1e-12 * wanted[0].length(), "{sum} {start}");
+    assert!(now[0].distance(wanted[0]) > 0.01 * wanted[0].length(), "the impulse that they exchanged");
+}
+
+#[test]
 fn a_bubble_drifts_with_its_impulse_over_its_mass_and_added_mass() {
     // Second order in the edge: 1.1 % on 162 vertices, 0.1 % on 642.
     for (set, tolerance) in [(even_sphere(4), 0.015), (uneven_sphere(4, 2), 0.015), (even_sphere(8), 0.004)] {

@@ -196,7 +196,8 @@ impl<'a> Session<'a> {
         let areas = areas.map(|(v, before)| AreaChange { vertex: *v, before, after: self.star_area(*v) }).collect();
         touched.iter().for_each(|v| self.marks[*v].dirty = true);
         let (blends, fused) = (plan.blends.clone(), plan.fused.clone());
-        self.data.transfer(self.surface, &Change { blends, areas, fused, joined: plan.joined });
+        let meets = plan.meets || !plan.fused.is_empty() || !plan.windows.is_empty();
+        self.data.transfer(self.surface, &Change { blends, areas, fused, joined: plan.joined, meets });
         debug_assert_eq!(
             crate::invariants::check_combinatorial_around(self.surface, &touched),
             Ok(()),

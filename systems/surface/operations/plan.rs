@@ -51,6 +51,8 @@ pub struct Plan {
     pub windows: SmallVec<[(Region, Region); 2]>,
     /// A region that is joined to another: `(gone, into)`.
     pub joined: Option<(Region, Region)>,
+    /// Whether films meet or part by it, as a snap or a separation makes them.
+    pub meets: bool,
 }
 
 impl Plan {

@@ -256,6 +256,7 @@ impl Session<'_> {
             created: smallvec![(away, false)],
             moved: smallvec![(vertex, back)],
             blends: smallvec![Blend { vertex: new, parents: smallvec![(vertex, 1.0)] }],
+            meets: true,
             ..Plan::default()
         };
         for (row, _) in &going {

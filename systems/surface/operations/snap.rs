@@ -217,7 +217,7 @@ impl Session<'_> {
 
     fn plan_snap(&self, kept: VertexRow, gone: VertexRow) -> Option<Plan> {
         let surface = &*self.surface;
-        let mut plan = Plan::default();
+        let mut plan = Plan { meets: true, ..Plan::default() };
         if !replace_vertex(&mut plan, surface, gone, kept) {
             return None;
         }

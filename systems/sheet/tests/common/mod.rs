@@ -190,7 +190,7 @@ impl Film {
             };
             let gained = self.sheet.impulse_gained(&forcing, dt);
             let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
-            self.sheet.keep_impulse(&self.state.positions, &wanted, &mut self.state.potentials);
+            self.sheet.keep_impulse(&self.state.positions, &wanted, &[], &mut self.state.potentials);
         }
         centre(&self.sheet.layout, &mut self.state.potentials);
         self.time += dt;

@@ -20,7 +20,7 @@ pub struct SheetRules {
     pub integrator: Integrator,
     /// Longest substep in capillary times, dimensionless.
     pub courant: f64,
-    /// Part of an edge length that a vertex may move in one step.
+    /// Part of an edge length that a vertex may move in one step, and part of itself by which an edge may change.
     pub cfl: f64,
     /// Diffusivity of circulation, m^2/s.
     pub diffusivity: f64,

@@ -29,7 +29,8 @@ pub struct VortexSheetSettings {
     /// smoothing length; above 0. Default 0.4; the leapfrog is stable to about 1.
     #[serde(deserialize_with = "range::positive")]
     pub courant: Ratio,
-    /// Part of an edge length that a vertex may move in one step, above 0 to 0.5; the mesh is mended between steps. Default 0.25.
+    /// Part of an edge length that a vertex may move in one step, and part of itself by which an edge may change, above 0 to 0.5; the mesh is
+    /// mended between steps, and a substep that turns out to do more than twice as much is taken again, shorter. Default 0.25.
     #[serde(deserialize_with = "range::half_at_most")]
     pub cfl: Ratio,
     /// Kinematic diffusivity of circulation over the films, m^2/s; a mode of degree `l` on a bubble of radius `R` fades at

@@ -238,3 +238,43 @@ fn a_burst_at_the_time_of_a_frame_takes_no_step_of_its_own() {
     }
     assert!(shortest > 1e-6, "{shortest:e}");
 }
+
+#[test]
+fn bubbles_of_other_soap_have_the_pressure_and_the_pace_of_their_own_tension() {
+    let bubble = |x: &str, tension: &str| {
+        format!(
+            r#"[ Sphere(centre: ({x}, 0, 0), radius: "3 cm"), HarmonicMode(degree: 2, amplitude: 0.02), Tension("{tension}"), Film(thickness: Uniform("400 nm")) ]"#
+        )
+    };
+    for (method, within) in [("VortexSheet(damping: 60)", 0.02), ("GeometricFlow()", 1e-3)] {
+        let scene = format!(
+            r#"Scene(title: "t", method: {method}, resolution: Spacing("8 mm"), duration: "2 s", entities: [{}, {}])"#,
+            bubble("-0.2", "15 mN/m"),
+            bubble("0.2", "45 mN/m")
+        );
+        let mut simulation = Simulation::from_scene_text(&scene).unwrap();
+        simulation.advance_to(0.3).unwrap();
+        let observed = |name: &str| simulation.observables().get(name).unwrap();
+        let [low, high] = ["excess_pressure_1", "excess_pressure_2"].map(observed);
+        assert!((low / (4.0 * 0.015 / 0.03) - 1.0).abs() < 0.02, "{method}: {low} Pa");
+        assert!((high / low - 3.0).abs() < 3.0 * within, "{method}: {}", high / low);
+        let energy = 2.0 * (0.015 * observed("area_1") + 0.045 * observed("area_2"));
+        assert!((observed("surface_energy") / energy - 1.0).abs() < 1e-9, "{method}");
+    }
+}
+
+#[test]
+fn two_soaps_that_share_a_wall_have_pressures_of_their_own() {
+    // Equal volumes: the bubble of greater tension has the greater pressure, and bulges into the other.
+    let scene = r#"Scene(title: "t", method: GeometricFlow(remesh: (snap: 0.45)), resolution: Spacing("5 mm"), duration: "2 s", entities: [
+        [ Sphere(centre: (-0.0301, 0, 0), radius: "3 cm"), Tension("25 mN/m"), Film(thickness: Uniform("400 nm")) ],
+        [ Sphere(centre: (0.0301, 0, 0), radius: "3 cm"), Tension("35 mN/m"), Film(thickness: Uniform("400 nm")) ],
+    ])"#;
+    let mut simulation = Simulation::from_scene_text(scene).unwrap();
+    simulation.advance_to(0.6).unwrap();
+    let observed = |name: &str| simulation.observables().get(name).unwrap();
+    let [low, high] = ["excess_pressure_1", "excess_pressure_2"].map(observed);
+    assert!(high > 1.2 * low, "{low} {high} Pa");
+    let shared = observed("area_1") + observed("area_2") - observed("area");
+    assert!(shared > 1e-4, "they have a wall in common: {shared} m^2");
+}

@@ -18,6 +18,7 @@ pub mod motion;
 pub mod perturbation;
 pub mod resolution;
 pub mod shape;
+pub mod tension;
 pub mod volumes;
 pub mod wire;
 

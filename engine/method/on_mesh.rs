@@ -6,6 +6,7 @@ use froth_components::authored::film_shape::FilmShape;
 use froth_components::authored::method::{Contact, Placement, Remesh};
 use froth_components::authored::motion::Drift;
 use froth_components::authored::perturbation::{Bumps, HarmonicMode, Stretch};
+use froth_components::authored::tension::Tension;
 use froth_components::authored::volumes::Volumes;
 use froth_components::authored::wire::{Moves, Wire};
 use froth_components::authored::{Name, PlaceInScene};
@@ -29,6 +30,7 @@ use froth_systems::tracker::events::{self, StepEvents};
 use froth_systems::tracker::feeding::{Feeds, LiquidFed};
 use froth_systems::tracker::films::{MeshRules, OpenRegions, TopologyChanged, TrackerState};
 use froth_systems::tracker::remeshing::{GasChanges, LiquidLost, NextVertexId, StepCounts};
+use froth_systems::tracker::tension::BubbleTensions;
 use froth_systems::tracker::wires::{Holders, Pins, WireLag};
 use glam::DVec3;
 
@@ -94,6 +96,7 @@ pub(super) fn register(world: &mut World, keep: &Remesh) -> Scale {
     StateRegistry::register::<TrackerState>(world, "tracker");
     StateRegistry::register::<NextVertexId>(world, "next_vertex_id");
     StateRegistry::register::<BubbleGas>(world, "bubble_gas");
+    StateRegistry::register::<BubbleTensions>(world, "bubble_tensions");
     StateRegistry::register::<BurstsDone>(world, "bursts_done");
     StateRegistry::register::<WireLag>(world, "wire_lag");
     StateRegistry::register::<LiquidLost>(world, "liquid_lost");
@@ -103,6 +106,7 @@ pub(super) fn register(world: &mut World, keep: &Remesh) -> Scale {
     world.init_resource::<TrackerState>();
     world.init_resource::<NextVertexId>();
     world.init_resource::<BubbleGas>();
+    world.init_resource::<BubbleTensions>();
     world.init_resource::<BurstsDone>();
     world.init_resource::<WireLag>();
     world.init_resource::<LiquidLost>();
@@ -167,6 +171,7 @@ pub(super) fn discretise(world: &mut World) -> Result<(), DiscretiseError> {
     fill_column::<MeshVertex, _>(world, &discrete.surface.positions.iter().map(|x| Position(*x)).collect::<Vec<_>>());
     let ramps = discrete.ramps.into_iter().collect();
     world.insert_resource(BubbleGas { ramps, ..BubbleGas::of(&discrete.surface) });
+    world.insert_resource(BubbleTensions(discrete.tensions.into_iter().collect()));
     world.insert_resource(OpenRegions(discrete.surface.open));
     world.insert_resource(discrete.surface.mesh);
     Ok(())
@@ -227,6 +232,7 @@ fn authored_films(world: &mut World) -> Vec<AuthoredFilm> {
                 moves: entity.get::<Moves>().cloned(),
                 drift: entity.get::<Drift>().map_or(DVec3::ZERO, |drift| drift.0.si()),
                 volumes: entity.get::<Volumes>().cloned(),
+                tension: entity.get::<Tension>().copied(),
             }
         };
         if let (Some(place), Some(film)) = (entity.get::<PlaceInScene>(), entity.get::<Film>()) {

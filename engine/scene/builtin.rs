@@ -11,6 +11,7 @@ use froth_components::authored::mesh_shape::{
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::perturbation::{Bumps, HarmonicMode, Stretch};
 use froth_components::authored::shape::{Disc, Ellipsoid, HalfSphere, Hexagon, Rectangle, Sphere};
+use froth_components::authored::tension::Tension;
 use froth_components::authored::volumes::Volumes;
 use froth_components::authored::wire::{Moves, Wire};
 
@@ -47,6 +48,7 @@ pub(super) fn register(registry: &mut AuthoredRegistry) {
     registry.register::<Spin>("Spin", "rigid rotation of the liquid within a film at the start");
     registry.register::<Swirl>("Swirl", "eddies of the liquid within a film at the start");
 
+    registry.register::<Tension>("Tension", "films of other soap than the scene's liquid");
     registry.register::<Volumes>("Volumes", "blows bubbles up to volumes of their own, or lets them shrink");
     registry.register::<Wire>("Wire", "a ring or line of wire that holds films");
     registry.register::<Moves>("Moves", "moves a wire, or the pinned rims of a film, may be keyframed");

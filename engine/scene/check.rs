@@ -43,6 +43,7 @@ const COMPANIONS: &[(&str, &[&str])] = &[
     ("Swirl", &["Film"]),
     ("Moves", HELD),
     ("Volumes", &["Film"]),
+    ("Tension", &["Film"]),
 ];
 
 /// What a component needs beside it; nothing where it stands alone.

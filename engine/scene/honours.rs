@@ -13,7 +13,7 @@ const BY_GEOMETRIC_FLOW: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "D
 const BY_VORTEX_SHEET: &[&str] = &["Name", "Film", "Bumps", "HarmonicMode", "Gravity", "Wind"];
 
 /// What takes a mesh, besides [`MeshShape`].
-const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes", "Stretch"];
+const ON_MESH: &[&str] = &["Wire", "Moves", "Burst", "Volumes", "Tension", "Stretch"];
 
 /// What acts on the liquid within a film alone.
 const ON_LIQUID: &[&str] = &["HeatSource", "Spin", "Swirl"];

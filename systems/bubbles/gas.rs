@@ -17,6 +17,7 @@ use crate::rows::fill_column;
 use crate::rows::registry::ColumnRegistry;
 use crate::tracker::films;
 use crate::tracker::remeshing::{GasChange, GasChanges};
+use crate::tracker::tension::BubbleTensions;
 
 /// What a bubble's volume goes to, evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,6 +115,7 @@ impl BubbleGas {
 /// The gas follows what the tracker did in this step.
 pub fn follow_bubbles(world: &mut World) {
     let changes = std::mem::take(&mut *world.resource_mut::<GasChanges>());
+    world.resource_mut::<BubbleTensions>().follow(&changes);
     let surface = films::take(world);
     let mut gas = std::mem::take(&mut *world.resource_mut::<BubbleGas>());
     gas.follow(&changes, &surface);

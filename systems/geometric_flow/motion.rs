@@ -16,7 +16,6 @@ use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal, Position, Velocity};
-use froth_surface::calculus::Weights;
 use froth_surface::flow::shape_keeping::{LEAST_PART, even_part};
 use froth_surface::flow::{Acceleration, Flow, FlowError, FlowState, Forcing, Mass};
 use froth_surface::motion::{MotionSettings, advance};
@@ -34,6 +33,7 @@ use crate::rows::{fill_column, read_column};
 use crate::stage::Stage;
 use crate::tracker::films::{self, MeshRules, TopologyChanged};
 use crate::tracker::remeshing::Slides;
+use crate::tracker::tension::FilmTensions;
 use crate::tracker::wires::{Holders, MOST_STOPS, Pins, WireLag, WireStuck};
 
 /// Part of an edge length that a vertex may move in one step.
@@ -259,10 +259,10 @@ fn propose(
     flow: &mut Flow,
     state: &FlowState,
 ) -> Result<(), FlowError> {
-    let (rules, liquid) = (world.resource::<FlowRules>(), world.resource::<Liquid>());
+    let (rules, tensions) = (world.resource::<FlowRules>(), FilmTensions::of(world, &surface.mesh));
     let targets = targets(world, surface);
     let forcing = Forcing {
-        tension: Weights::Uniform(2.0 * liquid.surface_tension),
+        tension: tensions.weights(),
         mass: Mass::PerVertex(&step.masses),
         acceleration: Acceleration::PerVertex(&step.pushes),
         targets: targets.as_deref(),

@@ -5,7 +5,8 @@ use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
-use froth_components::motion::Velocity;
+use froth_components::motion::{Position, Velocity};
+use froth_surface::SurfaceMesh;
 
 use super::measure::mass_of;
 use super::motion::FlowStep;
@@ -13,13 +14,16 @@ use super::settings::FlowRules;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
+use crate::tracker::tension::BubbleTensions;
 
 /// Records area, energies, speeds, and how the step went.
 pub fn observe_films(
-    vertices: Query<(&Area, &Velocity, &LiquidVolume), With<MeshVertex>>,
+    vertices: Query<(&Area, &Position, &Velocity, &LiquidVolume), With<MeshVertex>>,
     step: Res<FlowStep>,
     rules: Res<FlowRules>,
     liquid: Res<Liquid>,
+    mesh: Res<SurfaceMesh>,
+    tensions: Res<BubbleTensions>,
     mut observables: ResMut<Observables>,
 ) {
     if vertices.is_empty() {
@@ -27,12 +31,17 @@ pub fn observe_films(
         observables.record("area", "m^2", 0.0);
         return;
     }
-    let (areas, velocities, volumes) = columns(&vertices);
+    let (areas, positions, velocities, volumes) = columns(&vertices);
     let count = areas.len();
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
     let area = sum(&|v| areas[v].0);
     observables.record("area", "m^2", area);
-    observables.record("surface_energy", "J", 2.0 * liquid.surface_tension * area);
+    let films = mesh.faces().filter(|(_, face)| !face.is_ghost());
+    let energies = films.map(|(_, face)| {
+        let [a, b, c] = face.vertices().map(|v| positions[v.index()].0);
+        tensions.between(face.labels(), liquid.surface_tension) * (b - a).cross(c - a).length()
+    });
+    observables.record("surface_energy", "J", energies.sum());
     observables.record("liquid", "m^3", sum(&|v| volumes[v].0));
     observables.record("max_speed", "m/s", ordered_max(count, 0.0, |v| velocities[v].0.length()));
     if rules.is_inertial() {

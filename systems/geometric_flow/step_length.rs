@@ -21,6 +21,7 @@ use crate::clock::StepLimits;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::tracker::films::MeshRules;
+use crate::tracker::tension::BubbleTensions;
 
 /// Longest step in steps before.
 const GROWTH: f64 = 1.5;
@@ -37,6 +38,7 @@ pub fn limit_step(
     rules: Res<FlowRules>,
     mesh: Res<MeshRules>,
     liquid: Res<Liquid>,
+    tensions: Res<BubbleTensions>,
     clock: Res<Clock>,
     asked: Res<AskedLength>,
     mut limits: ResMut<StepLimits>,
@@ -47,7 +49,7 @@ pub fn limit_step(
     }
     let (velocities, areas, liquids) = columns(&vertices);
     let fastest = ordered_max(velocities.len(), 0.0, |v| velocities[v].0.length());
-    let (edge, tension) = (mesh.policy.edge, 2.0 * liquid.surface_tension);
+    let (edge, tension) = (mesh.policy.edge, 2.0 * tensions.largest(liquid.surface_tension));
     limits.propose("cfl", rules.cfl * edge / fastest);
     if clock.steps > 0 {
         limits.propose("growth", GROWTH * asked.0);

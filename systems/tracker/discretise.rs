@@ -4,6 +4,7 @@ use froth_components::authored::film::Film;
 use froth_components::authored::film_shape::FilmShape;
 use froth_components::authored::mesh_shape::{FrameKind, MeshFile, MeshShape};
 use froth_components::authored::shape::Shape;
+use froth_components::authored::tension::Tension;
 use froth_components::authored::volumes::Volumes;
 use froth_components::authored::wire::{Moves, Wire};
 use froth_surface::fault::{MeshFault, validate_with};
@@ -45,6 +46,8 @@ pub struct AuthoredFilm {
     pub drift: DVec3,
     /// What its bubbles grow or shrink to.
     pub volumes: Option<Volumes>,
+    /// Tension of an interface, if not the liquid's.
+    pub tension: Option<Tension>,
 }
 
 /// A wire as the scene writes it.
@@ -138,6 +141,8 @@ pub struct DiscreteFilms {
     pub surface: Surface,
     /// Thickness of the film, metres.
     pub thickness: Vec<f64>,
+    /// Tension of an interface of the regions that have their own, N/m.
+    pub tensions: Vec<(Region, f64)>,
     /// What bubbles grow or shrink to, in the order of the scene.
     pub ramps: Vec<(Region, Ramp)>,
     /// Velocity at the start, m/s.
@@ -171,6 +176,8 @@ impl DiscreteFilms {
                 .extend(triangles.pinned.iter().map(|held| if *held { Holders::pin_of_rim(number) } else { 0 }));
             owners.extend(std::iter::repeat_n(number, count));
             discrete.ramps.extend(ramps(film, &triangles, all.region_count() - 1)?);
+            let own = (1..triangles.region_count()).map(|label| Region(label + all.region_count() - 1));
+            discrete.tensions.extend(film.tension.iter().flat_map(|t| own.clone().map(|region| (region, t.0.si()))));
             all.append(&triangles);
         }
         discrete.surface = Surface::from_triangles(&all);

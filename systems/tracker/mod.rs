@@ -22,6 +22,7 @@ pub mod followers;
 pub mod observe;
 pub mod remeshing;
 pub mod shape;
+pub mod tension;
 pub mod wire_edges;
 pub mod wire_piercing;
 pub mod wires;

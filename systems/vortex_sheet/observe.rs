@@ -6,6 +6,7 @@ use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::Velocity;
+use froth_surface::SurfaceMesh;
 use glam::DVec3;
 
 use super::settings::SheetRules;
@@ -13,6 +14,7 @@ use super::work::SheetWork;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
+use crate::tracker::tension::BubbleTensions;
 
 /// Records area, energies, impulse, speeds, and how the step went.
 ///
@@ -24,6 +26,8 @@ pub fn observe_films(
     work: Res<SheetWork>,
     rules: Res<SheetRules>,
     liquid: Res<Liquid>,
+    tensions: Res<BubbleTensions>,
+    mesh: Res<SurfaceMesh>,
     mut observables: ResMut<Observables>,
 ) {
     if vertices.is_empty() {
@@ -34,7 +38,10 @@ pub fn observe_films(
     let (areas, velocities, volumes) = columns(&vertices);
     let count = areas.len();
     let area = ordered_sum(count, 0.0, |v| areas[v].0);
-    let film_energy = 2.0 * liquid.surface_tension * area;
+    let films = work.sheet.layout.panels().iter().zip(&work.sheet.geometry.area_vectors);
+    let energies = films
+        .map(|(panel, area)| tensions.between(mesh.face(panel.row).labels(), liquid.surface_tension) * area.length());
+    let film_energy = 2.0 * energies.sum::<f64>();
     let measured = work.sheet.measured;
     observables.record("area", "m^2", area);
     observables.record("surface_energy", "J", film_energy);

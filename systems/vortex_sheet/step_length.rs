@@ -22,6 +22,7 @@ use crate::rows::reduce::ordered_max;
 use crate::rows::{columns, fill_column};
 use crate::stage::Stage;
 use crate::tracker::films::MeshRules;
+use crate::tracker::tension::{BubbleTensions, FilmTensions};
 
 /// Longest step in steps before.
 const GROWTH: f64 = 1.5;
@@ -41,6 +42,7 @@ pub fn limit_step(
     rules: Res<SheetRules>,
     mesh: Res<MeshRules>,
     liquid: Res<Liquid>,
+    tensions: Res<BubbleTensions>,
     clock: Res<Clock>,
     mut limits: ResMut<StepLimits>,
 ) {
@@ -54,7 +56,7 @@ pub fn limit_step(
     });
     let shortest = sides.fold(f64::INFINITY, f64::min).sqrt();
     let shortest = limiting_edge(shortest, rules.kernel.smoothing_length);
-    let capillary = rules.courant * capillary_time(shortest, rules.density, liquid.surface_tension);
+    let capillary = rules.courant * capillary_time(shortest, rules.density, tensions.largest(liquid.surface_tension));
     limits.propose_for_substeps("capillary waves", capillary, MOST_SUBSTEPS);
     let fastest = ordered_max(velocities.len(), 0.0, |v| velocities[v].0.length());
     limits.propose("cfl", rules.cfl * mesh.policy.edge / fastest);
@@ -81,7 +83,8 @@ pub fn shorten_substep(world: &mut World) {
         state.positions.clone_from(&integration.start().positions);
         world.resource::<Potentials>().gather(&sheet.layout, &mut state.potentials, heads);
         sheet.measure(&state.positions);
-        sheet.load(&state.positions, &forcing(world, forces));
+        let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
+        sheet.load(&state.positions, &forcing(world, &tensions, forces));
         *is_under_way = false;
         report.substeps -= 1;
         let start: Vec<Position> = state.positions.iter().map(|x| Position(*x)).collect();

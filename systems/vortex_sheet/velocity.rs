@@ -11,13 +11,15 @@ use super::work::{SheetWork, with_work};
 use crate::rows::fill_column;
 use crate::stage::Stage;
 use crate::tracker::films::MeshRules;
+use crate::tracker::tension::BubbleTensions;
 
 /// Time in which the mesh slides its part of the way: a substep of a mesh whose edges have the length that the scene asks for, s.
 ///
 /// Short edges make substeps short; vertices that slid as far in each of those would race along the films.
 fn sliding_interval(world: &World) -> f64 {
+    let tension = world.resource::<BubbleTensions>().largest(world.resource::<Liquid>().surface_tension);
     let (rules, edge) = (world.resource::<SheetRules>(), world.resource::<MeshRules>().policy.edge);
-    rules.courant * capillary_time(edge, rules.density, world.resource::<Liquid>().surface_tension)
+    rules.courant * capillary_time(edge, rules.density, tension)
 }
 
 /// Works out sheet strengths, vector potentials, fluxes and velocities, and what convection does to the potentials.

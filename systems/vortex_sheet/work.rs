@@ -9,13 +9,13 @@ use froth_components::material::Liquid;
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal};
 use froth_sheet::{Forcing, Integration, Sheet, SheetError, SheetState};
 use froth_surface::Region;
-use froth_surface::calculus::Weights;
 use glam::DVec3;
 
 use super::settings::SheetRules;
 use crate::observe::{Fault, Faults};
 use crate::rows::read_column;
 use crate::stage::Stage;
+use crate::tracker::tension::FilmTensions;
 
 /// A sheet under way.
 #[derive(Resource, Debug)]
@@ -161,12 +161,8 @@ pub(super) enum SheetFault {
 }
 
 /// What acts on the films.
-pub(super) fn forcing<'a>(world: &World, forces: &'a [DVec3]) -> Forcing<'a> {
-    Forcing {
-        tension: Weights::Uniform(2.0 * world.resource::<Liquid>().surface_tension),
-        density: world.resource::<SheetRules>().density,
-        forces,
-    }
+pub(super) fn forcing<'a>(world: &World, tensions: &'a FilmTensions, forces: &'a [DVec3]) -> Forcing<'a> {
+    Forcing { tension: tensions.weights(), density: world.resource::<SheetRules>().density, forces }
 }
 
 /// External forces per vertex, N: accelerations of the liquid, and pressures along the normal.

@@ -69,7 +69,7 @@ Scene(
     duration: "1 s",
     entities: [
         [ Name("cube"), Cube(centre: (0, "1 m", 0), side: "2 cm"), Film(thickness: Uniform("500 nm")), Bumps(), Drift((0.1, 0, 0)) ],
-        [ DoubleBubble(axis: (0, 1, 0), radii: ("2 cm", "1 cm")), Film(thickness: Uniform("500 nm")), Name("pair"), Volumes(of: ["30 ml", "5 ml"], within: "0.1 s") ],
+        [ DoubleBubble(axis: (0, 1, 0), radii: ("2 cm", "1 cm")), Film(thickness: Uniform("500 nm")), Name("pair"), Volumes(of: ["30 ml", "5 ml"], within: "0.1 s"), Tension("20 mN/m") ],
         [ TripleBubble(axis: (0, 1, 0), radius: "1 cm"), Stretch((1.25, 1, 0.8)), Film(thickness: Uniform("500 nm")) ],
         [ QuadrupleBubble(radius: "1 cm"), Film(thickness: Uniform("500 nm")) ],
         [ KelvinCells(size: "1 cm", count: 3), Film(thickness: Uniform("500 nm")) ],
@@ -79,7 +79,7 @@ Scene(
         [ Catenoid(axis: (0, 1, 0), radius: "3 cm", gap: "2 cm"), Film(thickness: Uniform("500 nm")) ],
         [ WireFrame(kind: Tetrahedron, edge: "5 cm"), Film(thickness: Uniform("500 nm")), Moves(velocity: (0, 0.1, 0)) ],
         [ MeshFile(path: "tetrahedron.obj", scale: 0.01, centre: (1, 2, 3)), Film(thickness: Uniform("500 nm")) ],
-        [ Wire(path: Ring(centre: (0, "1 cm", 0), axis: (0, 1, 0), radius: "3 cm"), holds: "pair"), Moves(velocity: [(t: 0, v: (0, 0, 0)), (t: 1, v: (0, 0.01, 0))]) ],
+        [ Wire(path: Ring(centre: (0, "1 cm", 0), axis: (0, 1, 0), radius: "3 cm"), holds: "pair", feeds: "500 nm"), Moves(velocity: [(t: 0, v: (0, 0, 0)), (t: 1, v: (0, 0.01, 0))]) ],
         [ Wire(path: Line(points: [(0, 0, 0), (0, 0, 1), (0, 1, 1)], closed: true)) ],
         [ Burst(every: "0.1 s", first: 0.5, order: Sequence([3, 1, 2])) ],
         [ Burst(every: 1, order: Random(seed: 7)) ], [ Burst(every: 1, order: Smallest) ], [ Burst(every: 1, order: Largest) ],

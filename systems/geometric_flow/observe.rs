@@ -6,7 +6,7 @@ use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::{Position, Velocity};
-use froth_surface::SurfaceMesh;
+use froth_surface::{SurfaceMesh, VertexRow};
 
 use super::measure::mass_of;
 use super::motion::FlowStep;
@@ -14,7 +14,7 @@ use super::settings::FlowRules;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
-use crate::tracker::tension::BubbleTensions;
+use crate::tracker::tension::{BubbleTensions, film_energy};
 
 /// Records area, energies, speeds, and how the step went.
 pub fn observe_films(
@@ -36,12 +36,8 @@ pub fn observe_films(
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
     let area = sum(&|v| areas[v].0);
     observables.record("area", "m^2", area);
-    let films = mesh.faces().filter(|(_, face)| !face.is_ghost());
-    let energies = films.map(|(_, face)| {
-        let [a, b, c] = face.vertices().map(|v| positions[v.index()].0);
-        tensions.between(face.labels(), liquid.surface_tension) * (b - a).cross(c - a).length()
-    });
-    observables.record("surface_energy", "J", energies.sum());
+    let place = |v: VertexRow| positions[v.index()].0;
+    observables.record("surface_energy", "J", film_energy(&mesh, &tensions, liquid.surface_tension, place));
     observables.record("liquid", "m^3", sum(&|v| volumes[v].0));
     observables.record("max_speed", "m/s", ordered_max(count, 0.0, |v| velocities[v].0.length()));
     if rules.is_inertial() {

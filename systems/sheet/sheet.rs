@@ -334,11 +334,10 @@ impl Sheet {
         self.clusters.impulses(&self.layout, &self.geometry, potentials)
     }
 
-    /// Impulse per density that external forces give each free cluster in `dt` seconds, m^4/s.
+    /// Impulse per density that external forces per vertex (N) give each free cluster in `dt` seconds, m^4/s.
     #[must_use]
-    pub fn impulse_gained(&self, forcing: &Forcing<'_>, dt: f64) -> Vec<DVec3> {
-        let sums = self.clusters.sums(forcing.forces);
-        sums.into_iter().map(|force| force * (dt / forcing.density)).collect()
+    pub fn impulse_gained(&self, forces: &[DVec3], density: f64, dt: f64) -> Vec<DVec3> {
+        self.clusters.sums(forces).into_iter().map(|force| force * (dt / density)).collect()
     }
 
     /// Gives free clusters the impulse per density (m^4/s) that they shall have, at the shape last measured; those with a vertex in `touching`

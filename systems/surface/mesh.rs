@@ -157,6 +157,12 @@ pub struct Remap {
 }
 
 impl Remap {
+    /// Drops the values of vertices that go from a list with one per row.
+    pub fn close_up<T>(&self, values: &mut Vec<T>) {
+        let mut rows = self.vertices.iter();
+        values.retain(|_| rows.next().is_some_and(Option::is_some));
+    }
+
     /// Values of the vertices that stay, in their new rows.
     #[must_use]
     pub fn carry<T: Copy>(&self, values: &PerVertex<T>) -> PerVertex<T> {

@@ -117,8 +117,7 @@ impl Transfer for Origins {
     }
 
     fn compact(&mut self, remap: &Remap) {
-        let kept = remap.vertices.iter().zip(&self.of).filter(|(row, _)| row.is_some());
-        self.of = kept.map(|(_, origin)| *origin).collect();
+        remap.close_up(&mut self.of);
     }
 }
 

@@ -6,7 +6,8 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::world::World;
 use froth_components::material::Liquid;
 use froth_surface::calculus::Weights;
-use froth_surface::{Region, SurfaceMesh};
+use froth_surface::{Face, Region, SurfaceMesh, VertexRow};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::remeshing::{GasChange, GasChanges};
@@ -48,6 +49,22 @@ impl BubbleTensions {
     }
 }
 
+/// Energy of the films, `sum 2 sigma A`, J, with vertices at `place` (metres) and the tension `usual` (N/m) where bubbles have none of their own.
+#[must_use]
+pub fn film_energy(
+    mesh: &SurfaceMesh,
+    tensions: &BubbleTensions,
+    usual: f64,
+    place: impl Fn(VertexRow) -> DVec3,
+) -> f64 {
+    let films = mesh.faces().filter(|(_, face)| !face.is_ghost());
+    let energy = |face: &Face| {
+        let [a, b, c] = face.vertices().map(&place);
+        tensions.between(face.labels(), usual) * (b - a).cross(c - a).length()
+    };
+    films.map(|(_, face)| energy(face)).sum()
+}
+
 /// Tension `2 σ` of every film, N/m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmTensions {
@@ -80,7 +97,6 @@ impl FilmTensions {
 mod tests {
     use super::*;
     use froth_surface::bodies::Division;
-    use glam::DVec3;
 
     #[test]
     fn a_film_has_the_mean_of_its_bubbles_and_the_outside_has_no_say() {

@@ -3,23 +3,20 @@
 use bevy_ecs::world::World;
 use froth_sheet::Potentials;
 use froth_sheet::potentials::centre;
-use froth_surface::SurfaceMesh;
 use glam::DVec3;
 
 use super::settings::SheetRules;
-use super::work::{SheetWork, forcing, on_arrival, with_work};
+use super::work::{SheetWork, load, on_arrival, with_work};
 use crate::bubbles::gas::BubbleGas;
 use crate::stage::Stage;
-use crate::tracker::tension::FilmTensions;
 
 /// The second kick by tension, external forces and convection. Integrators that do not kick have done all of it.
 pub fn kick_again(world: &mut World) {
     on_arrival(world, |world, work, substep| {
         let rules = *world.resource::<SheetRules>();
-        let SheetWork { sheet, state, heads, forces, .. } = work;
+        load(world, work);
+        let SheetWork { sheet, state, heads, .. } = work;
         heads.clone_from(&sheet.heads);
-        let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
-        sheet.load(&state.positions, &forcing(world, &tensions, forces));
         if let Some([_, after]) = rules.integrator.kicks() {
             sheet.kick(after * substep.length, rules.density, heads, &mut state.potentials);
         }
@@ -31,8 +28,7 @@ pub fn kick_again(world: &mut World) {
 pub fn keep_impulse(world: &mut World) {
     on_arrival(world, |world, work, substep| {
         let SheetWork { sheet, state, forces, impulses, touching, report, .. } = work;
-        let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
-        let gained = sheet.impulse_gained(&forcing(world, &tensions, forces), substep.length);
+        let gained = sheet.impulse_gained(forces, world.resource::<SheetRules>().density, substep.length);
         let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
         let correction = sheet.keep_impulse(&state.positions, &wanted, touching, &mut state.potentials);
         report.impulse_correction = report.impulse_correction.max(correction);

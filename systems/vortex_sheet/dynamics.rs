@@ -4,14 +4,12 @@ use bevy_ecs::world::World;
 use froth_components::authored::field::Wind;
 use froth_components::kind::MeshVertex;
 use froth_components::motion::{Pinned, Position};
-use froth_surface::SurfaceMesh;
 use glam::DVec3;
 
 use super::settings::SheetRules;
-use super::work::{SheetWork, external_forces, forcing, with_work};
+use super::work::{SheetWork, external_forces, load, with_work};
 use crate::rows::read_column;
 use crate::stage::Stage;
-use crate::tracker::tension::FilmTensions;
 use crate::tracker::wires::{Holders, WireLag};
 
 /// Looks up how fast the wind is.
@@ -32,9 +30,8 @@ pub fn press_by_tension(world: &mut World) {
     with_work(world, Stage::Dynamics, |world, work, substep| {
         work.forces = forces;
         let rules = *world.resource::<SheetRules>();
-        let SheetWork { sheet, state, heads, forces, integration, is_under_way, .. } = work;
-        let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
-        sheet.load(&state.positions, &forcing(world, &tensions, forces));
+        load(world, work);
+        let SheetWork { sheet, state, heads, integration, is_under_way, .. } = work;
         if let Some([before, _]) = rules.integrator.kicks() {
             sheet.kick(before * substep.length, rules.density, heads, &mut state.potentials);
         }

@@ -6,7 +6,7 @@ use froth_components::film::{Area, LiquidVolume};
 use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::Velocity;
-use froth_surface::SurfaceMesh;
+use froth_surface::{SurfaceMesh, VertexRow};
 use glam::DVec3;
 
 use super::settings::SheetRules;
@@ -14,7 +14,7 @@ use super::work::SheetWork;
 use crate::observe::Observables;
 use crate::rows::columns;
 use crate::rows::reduce::{ordered_max, ordered_sum};
-use crate::tracker::tension::BubbleTensions;
+use crate::tracker::tension::{BubbleTensions, film_energy};
 
 /// Records area, energies, impulse, speeds, and how the step went.
 ///
@@ -38,10 +38,8 @@ pub fn observe_films(
     let (areas, velocities, volumes) = columns(&vertices);
     let count = areas.len();
     let area = ordered_sum(count, 0.0, |v| areas[v].0);
-    let films = work.sheet.layout.panels().iter().zip(&work.sheet.geometry.area_vectors);
-    let energies = films
-        .map(|(panel, area)| tensions.between(mesh.face(panel.row).labels(), liquid.surface_tension) * area.length());
-    let film_energy = 2.0 * energies.sum::<f64>();
+    let place = |v: VertexRow| work.state.positions[v.index()];
+    let film_energy = film_energy(&mesh, &tensions, liquid.surface_tension, place);
     let measured = work.sheet.measured;
     observables.record("area", "m^2", area);
     observables.record("surface_energy", "J", film_energy);

@@ -15,14 +15,14 @@ use froth_sheet::{Potentials, geometry};
 use froth_surface::SurfaceMesh;
 
 use super::settings::SheetRules;
-use super::work::{SheetWork, forcing, with_work};
+use super::work::{SheetWork, load, with_work};
 use crate::clock::StepLimits;
 use crate::plan::AnotherPass;
 use crate::rows::reduce::ordered_max;
 use crate::rows::{columns, fill_column};
 use crate::stage::Stage;
 use crate::tracker::films::MeshRules;
-use crate::tracker::tension::{BubbleTensions, FilmTensions};
+use crate::tracker::tension::BubbleTensions;
 
 /// Longest step in steps before.
 const GROWTH: f64 = 1.5;
@@ -79,19 +79,20 @@ pub fn shorten_substep(world: &mut World) {
         if !(part * TOO_FAR < 1.0) {
             return Ok(());
         }
-        let SheetWork { sheet, state, heads, forces, integration, is_under_way, report, .. } = work;
+        let SheetWork { sheet, state, heads, integration, is_under_way, report, .. } = work;
         state.positions.clone_from(&integration.start().positions);
         world.resource::<Potentials>().gather(&sheet.layout, &mut state.potentials, heads);
-        sheet.measure(&state.positions);
-        let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
-        sheet.load(&state.positions, &forcing(world, &tensions, forces));
         *is_under_way = false;
         report.substeps -= 1;
         let start: Vec<Position> = state.positions.iter().map(|x| Position(*x)).collect();
         fill_column::<MeshVertex, _>(world, &start);
+        let taken = report.substeps;
         let mut clock = world.resource_mut::<Clock>();
-        if report.substeps > 0 {
-            clock.end_after(report.substeps);
+        if taken > 0 {
+            clock.end_after(taken);
+            // No other pass does it.
+            work.sheet.measure(&work.state.positions);
+            load(world, work);
         } else {
             (clock.step_length, clock.substeps) = (substep.length * part.max(LEAST_PART), 1);
             world.resource_mut::<AnotherPass>().0 = true;

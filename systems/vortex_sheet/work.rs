@@ -8,7 +8,7 @@ use froth_components::kind::MeshVertex;
 use froth_components::material::Liquid;
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, Normal};
 use froth_sheet::{Forcing, Integration, Sheet, SheetError, SheetState};
-use froth_surface::Region;
+use froth_surface::{Region, SurfaceMesh};
 use glam::DVec3;
 
 use super::settings::SheetRules;
@@ -160,9 +160,12 @@ pub(super) enum SheetFault {
     Wire(#[from] crate::tracker::wires::WireStuck),
 }
 
-/// What acts on the films.
-pub(super) fn forcing<'a>(world: &World, tensions: &'a FilmTensions, forces: &'a [DVec3]) -> Forcing<'a> {
-    Forcing { tension: tensions.weights(), density: world.resource::<SheetRules>().density, forces }
+/// Works out the pressures that hold the films where they were last measured against tension and external forces.
+pub(super) fn load(world: &World, work: &mut SheetWork) {
+    let tensions = FilmTensions::of(world, world.resource::<SurfaceMesh>());
+    let density = world.resource::<SheetRules>().density;
+    let forcing = Forcing { tension: tensions.weights(), density, forces: &work.forces };
+    work.sheet.load(&work.state.positions, &forcing);
 }
 
 /// External forces per vertex, N: accelerations of the liquid, and pressures along the normal.

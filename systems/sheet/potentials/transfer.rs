@@ -159,9 +159,7 @@ impl Transfer for Potentials {
     fn slide(&mut self, _: &Surface, _: &PerVertex<DVec3>) {}
 
     fn compact(&mut self, remap: &Remap) {
-        let stay = || remap.vertices.iter().map(Option::is_some);
-        let (mut tables, mut met) = (stay(), stay());
-        self.tables.retain(|_| tables.next().unwrap_or(false));
-        self.met.retain(|_| met.next().unwrap_or(false));
+        remap.close_up(&mut self.tables);
+        remap.close_up(&mut self.met);
     }
 }

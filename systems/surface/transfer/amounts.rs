@@ -100,7 +100,6 @@ impl Transfer for Amounts {
     }
 
     fn compact(&mut self, remap: &Remap) {
-        let kept = remap.vertices.iter().zip(&self.amounts).filter(|(row, _)| row.is_some());
-        self.amounts = kept.map(|(_, amount)| *amount).collect();
+        remap.close_up(&mut self.amounts);
     }
 }

@@ -178,7 +178,6 @@ impl Transfer for Circulations {
     }
 
     fn compact(&mut self, remap: &Remap) {
-        let mut rows = remap.vertices.iter();
-        self.tables.retain(|_| rows.next().is_some_and(Option::is_some));
+        remap.close_up(&mut self.tables);
     }
 }

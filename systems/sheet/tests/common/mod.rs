@@ -188,7 +188,7 @@ impl Film {
                 density: settings.density,
                 forces: &self.forces,
             };
-            let gained = self.sheet.impulse_gained(&forcing, dt);
+            let gained = self.sheet.impulse_gained(forcing.forces, forcing.density, dt);
             let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
             self.sheet.keep_impulse(&self.state.positions, &wanted, &[], &mut self.state.potentials);
         }

@@ -165,6 +165,35 @@ fn a_ring_that_moves_through_still_air_is_a_ring_at_rest_in_a_wind() {
 }
 
 #[test]
+fn a_bubble_that_is_blown_up_pushes_another_away() {
+    let flow = 60e-6 - 4.0 / 3.0 * std::f64::consts::PI * 0.02f64.powi(3);
+    let blown =
+        r#"[ Sphere(radius: "2 cm"), Film(thickness: Uniform("400 nm")), Volumes(of: ["60 ml"], within: "0.05 s") ]"#;
+    let other = r#"[ Sphere(radius: "1 cm", centre: ("8 cm", 0, 0)), Film(thickness: Uniform("400 nm")) ]"#;
+    let scene = format!(
+        r#"Scene(title: "t", method: VortexSheet(), resolution: Spacing("4 mm"), duration: "1 s", entities: [{blown}, {other}])"#
+    );
+    let mut simulation = Simulation::from_scene_text(&scene).unwrap();
+    simulation.advance_to(0.01).unwrap();
+    let centre = |simulation: &mut Simulation, is_of: fn(&DVec3) -> bool| {
+        let places: Vec<DVec3> =
+            simulation.column::<MeshVertex, Position>().iter().map(|x| x.0).filter(is_of).collect();
+        places.iter().sum::<DVec3>() / places.len() as f64
+    };
+    let near = centre(&mut simulation, |x| x.x < 0.05);
+    let far = centre(&mut simulation, |x| x.x > 0.05);
+    // A small bubble is air among air: d' = Q/(4 pi d^2), and the air that it displaces moves on average as its middle does.
+    let distance = (0.08f64.powi(3) + 3.0 * flow / 0.05 * 0.01 / (4.0 * std::f64::consts::PI)).cbrt();
+    let (way, expected) = (far.x - 0.08, distance - 0.08);
+    assert!((way / expected - 1.0).abs() < 0.02, "{way:e} m for {expected:e}");
+    assert!(
+        near.length() < 0.02 * expected && DVec3::new(0.0, far.y, far.z).length() < 0.02 * expected,
+        "{near} {far}"
+    );
+    assert!(simulation.observables().get("volume_error").unwrap() < 1e-12);
+}
+
+#[test]
 fn a_wire_feeds_the_film_that_is_drawn_out_of_it() {
     let scene = |feeds: &str| {
         format!(

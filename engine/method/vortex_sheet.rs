@@ -54,6 +54,9 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let gravity = Requires::component::<Gravity>("gravity").and(left());
     plan.add(Stage::Forces, "gravity", forces::pull_evenly_by_gravity::<MeshVertex>, gravity);
     plan.add(Stage::Forces, "the wind blows", dynamics::let_wind_blow, Requires::component::<Wind>("a wind"));
+    let filling = || Requires::component::<Volumes>("volumes that change");
+    let push = "gas that comes into bubbles pushes the air away";
+    plan.add(Stage::Forces, push, dynamics::push_by_gas, filling().and(left()));
     plan.add(Stage::Dynamics, "tension and forces change the potentials", dynamics::press_by_tension, left());
     let wires = Requires::that("films held by wires", has_wires).and(left());
     plan.add(Stage::Dynamics, "circulation on wires carries films along", dynamics::carry_by_wires, wires);
@@ -61,8 +64,7 @@ pub fn assemble(plan: &mut SchedulePlan) {
     let shorten = "take the substep again, shorter, where films outrun it";
     plan.add(Stage::Velocity, shorten, step_length::shorten_substep, left());
     plan.add(Stage::Deform, "the integrator takes the rates", motion::integrate, left());
-    let filling = Requires::component::<Volumes>("volumes that change");
-    plan.add(Stage::Deform, "let gas in and out of the bubbles", motion::fill_bubbles, filling);
+    plan.add(Stage::Deform, "let gas in and out of the bubbles", motion::fill_bubbles, filling());
     plan.add(Stage::Deform, "move the films, as far as none touches another", motion::move_films, left());
     plan.add(Stage::Deform, "tension and forces change the potentials again", arrival::kick_again, left());
     plan.add(Stage::Deform, "films in the way of others come to rest", contacts::rest_contacts, left());

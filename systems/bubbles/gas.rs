@@ -67,6 +67,16 @@ impl BubbleGas {
         self.ramps.retain(|_, ramp| ramp.end > to);
     }
 
+    /// Mean rates at which gas comes into the bubbles whose volumes change between two times, as [`Self::fill`] lets it, m^3/s.
+    #[must_use]
+    pub fn inflows(&self, from: f64, to: f64) -> BTreeMap<Region, f64> {
+        let inflow = |(region, ramp): (&Region, &Ramp)| {
+            let volume = *self.targets.get(region)?;
+            Some((*region, (ramp.at(volume, from, to) - volume) / (to - from)))
+        };
+        self.ramps.iter().filter_map(inflow).collect()
+    }
+
     /// Follows regions that were joined, divided, or are gone.
     pub fn follow(&mut self, changes: &GasChanges, surface: &Surface) {
         for change in &changes.0 {
@@ -171,6 +181,15 @@ mod tests {
             from = to;
         }
         assert!(bubbles.ramps.is_empty());
+    }
+
+    #[test]
+    fn gas_comes_in_at_the_rate_at_which_volumes_change() {
+        let bubbles = gas(&[1.0, 3.0], 2.0, 5.0);
+        let inflows: Vec<f64> = bubbles.inflows(0.0, 0.5).into_values().collect();
+        assert!((inflows[0] - 2.0).abs() < 1e-14 && (inflows[1] - 1.0).abs() < 1e-14);
+        let at_the_end: Vec<f64> = bubbles.inflows(0.0, 4.0).into_values().collect();
+        assert!((at_the_end[0] - 1.0).abs() < 1e-14 && (at_the_end[1] - 0.5).abs() < 1e-14);
     }
 
     #[test]

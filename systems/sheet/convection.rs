@@ -13,7 +13,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, circulations, corners, edges};
+use crate::geometry::{Geometry, circulations, corners, edges, turning};
 use crate::layout::Layout;
 
 /// Sums over pairs that the convection needs, per panel.
@@ -42,7 +42,7 @@ pub fn heads(
         let (e, gamma) = (edges(x), circulations(panel, potentials));
         let (a, s) = (sums.vector_potentials[row], sums.attractions[row]);
         let carried = w[0] * gamma[0] + w[1] * gamma[1] + w[2] * gamma[2];
-        let turning = 0.5 * ((w[1] - w[0]).cross(x[2] - x[0]) + (x[1] - x[0]).cross(w[2] - w[0]));
+        let turning = turning(x, w);
         for k in 0..3 {
             let across = gamma[(k + 1) % 3] - gamma[(k + 2) % 3];
             reactions[panel.corners[k] as usize] +=

@@ -101,6 +101,13 @@ pub fn edges([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     [c - b, a - c, b - a]
 }
 
+/// Rate of the area vector of a triangle with corners at `x` (metres) that move with `w` (m/s), m^2/s.
+#[must_use]
+#[inline]
+pub fn turning(x: [DVec3; 3], w: [DVec3; 3]) -> DVec3 {
+    0.5 * ((w[1] - w[0]).cross(x[2] - x[0]) + (x[1] - x[0]).cross(w[2] - w[0]))
+}
+
 /// Circulations `Gamma_k = phi_front - phi_back` at the corners of a panel, m^2/s.
 #[must_use]
 #[inline]

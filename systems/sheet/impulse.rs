@@ -42,6 +42,12 @@ impl Clusters {
         self.0.count == 0
     }
 
+    /// Whether a vertex belongs to a free cluster.
+    #[must_use]
+    pub fn is_free(&self, vertex: usize) -> bool {
+        self.0.of_vertex[vertex].is_some()
+    }
+
     /// What each free cluster is known by when the mesh has changed: its bubble of the least label, or the outside where it has none.
     #[must_use]
     pub fn names(&self, layout: &Layout) -> Vec<Region> {

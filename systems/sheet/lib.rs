@@ -11,6 +11,7 @@
 //! | shape of the films, and what a vertex's volume gradients span | [`geometry`], [`symmetric`] |
 //! | which discretisation, and what each has to say | [`discretisation`], [`variational`] (the default), [`pointwise`] |
 //! | from potentials to motion | [`flow`] (with [`froth_biot_savart`]), [`sliding`] |
+//! | what else moves the air: a wind, gas that comes into bubbles | [`ambient`] |
 //! | from forces to potentials | [`tension`], [`convection`], [`damping`] |
 //! | what holds | [`wires`], [`impulse`] |
 //! | films in contact | [`inelastic`] |
@@ -22,6 +23,7 @@
 //! and foams*. The default discretisation is a variational one: fluxes through vertex shares instead of velocities at points. The
 //! paper's own is there for comparison.
 
+pub mod ambient;
 pub mod conjugate_gradient;
 pub mod convection;
 pub mod damping;

@@ -3,6 +3,7 @@
 //! | stage | function | equation |
 //! |---|---|---|
 //! | geometry | [`Sheet::measure`] | area vectors, volume gradients |
+//! | gas that comes in | [`Sheet::inflate`] | its flow `u_s` in the [`ambient`](crate::ambient) air |
 //! | tension | [`Sheet::load`] | `d phi/dt = -p/rho` |
 //! | wires | [`Sheet::hold`] | fluxes on wires are given |
 //! | Biot-Savart | [`Sheet::flow`] | strengths, vector potential, fluxes, velocities, convection |
@@ -26,6 +27,7 @@ use froth_surface::{Region, Surface};
 use glam::DVec3;
 
 use crate::SheetError;
+use crate::ambient::{self, Ambient};
 use crate::damping::Damping;
 use crate::discretisation::{Discretisation, Films, Scheme, Sources};
 use crate::flow;
@@ -79,6 +81,8 @@ pub struct Sheet {
     pub wires: Wires,
     /// Free clusters.
     pub clusters: Clusters,
+    /// Velocities of the air around.
+    pub ambient: Ambient,
     /// Pressures per side, Pa.
     pub pressures: Vec<f64>,
     /// Velocities per vertex, m/s.
@@ -129,6 +133,7 @@ impl Sheet {
             geometry: Geometry::default(),
             wires: Wires::default(),
             clusters: Clusters::default(),
+            ambient: Ambient::default(),
             pressures: Vec::new(),
             velocities: Vec::new(),
             heads: Vec::new(),
@@ -150,6 +155,7 @@ impl Sheet {
         self.incidence.rebuild(surface);
         self.wires = Wires::new(&self.layout, surface);
         self.clusters = Clusters::new(&self.layout, surface);
+        self.ambient.by_sources.clear();
         self.scheme.rebuild(&self.layout);
         self.projection.system.lay_out(&self.incidence);
         self.gauge_of.clear();
@@ -174,6 +180,21 @@ impl Sheet {
             self.pairs.place(&self.geometry.centres);
             self.is_placed = true;
         }
+    }
+
+    /// Works out how gas that comes into closed regions at rates of `inflows` (m^3/s) moves the air around, with the films where they were
+    /// last measured: [`ambient`](crate::ambient). Bubbles smaller than `unresolved` m^3 push it as those of that volume.
+    pub fn inflate(&mut self, positions: &[DVec3], inflows: &BTreeMap<Region, f64>, unresolved: f64) {
+        let Self { layout, geometry, incidence, ambient: Ambient { by_sources, .. }, .. } = self;
+        by_sources.clear();
+        if inflows.is_empty() {
+            return;
+        }
+        let mut volumes = Vec::new();
+        measured_volumes(incidence, positions, &mut volumes);
+        let rate = |(region, volume): (&Region, &f64)| Some((*region, inflows.get(region)? / volume.max(unresolved)));
+        let dilatations = incidence.closed().iter().zip(&volumes).filter_map(rate).collect();
+        ambient::velocities_by_sources(layout, geometry, positions, &dilatations, by_sources);
     }
 
     /// The pressures that hold the films against tension and external forces.
@@ -231,15 +252,16 @@ impl Sheet {
             return Ok(());
         }
         self.place_panels();
+        let seen = self.ambient.seen(wire_velocities, positions.len());
         let Self { layout, geometry, incidence, wires, scheme, strengths, pairs, .. } = self;
         flow::strengths(layout, positions, potentials, strengths);
         let films = Films { layout, geometry, incidence, wires, positions };
-        self.measured.wires = scheme.hold(films, Sources { strengths, pairs }, wire_velocities, potentials)?;
+        self.measured.wires = scheme.hold(films, Sources { strengths, pairs }, &seen, potentials)?;
         Ok(())
     }
 
-    /// Velocities of the films from the potentials, with the mesh's own sliding of one part of the way in `sliding_interval`
-    /// seconds, and what convection does.
+    /// Velocities of the films from the potentials, in the air around, with the mesh's own sliding of one part of the way in
+    /// `sliding_interval` seconds, and what convection does.
     ///
     /// # Errors
     /// [`SheetError::Pairs`].
@@ -253,18 +275,33 @@ impl Sheet {
         sliding_interval: f64,
     ) -> Result<(), SheetError> {
         self.place_panels();
-        let Self { layout, geometry, incidence, wires, scheme, strengths, pairs, velocities, heads, .. } = self;
+        let seen = self.ambient.seen(wire_velocities, positions.len());
+        let Self { layout, geometry, incidence, wires, scheme, strengths, pairs, velocities, .. } = self;
         flow::strengths(layout, positions, potentials, strengths);
         let films = Films { layout, geometry, incidence, wires, positions };
         let energy = scheme.velocities(films, Sources { strengths, pairs }, potentials, velocities)?;
         sliding.add(layout, geometry, positions, wires.held(), sliding_interval, velocities);
         for (v, w) in velocities.iter_mut().enumerate().filter(|(v, _)| wires.held()[*v]) {
-            *w = wire_velocities.get(v).copied().unwrap_or(DVec3::ZERO);
+            *w = seen[v];
         }
+        self.leave_on_wires();
+        let Self { layout, geometry, incidence, wires, scheme, velocities, heads, ambient, .. } = self;
+        let films = Films { layout, geometry, incidence, wires, positions };
         scheme.heads(films, potentials, velocities, heads);
+        velocities.iter_mut().enumerate().for_each(|(v, w)| *w += ambient.at(v));
         self.measured.kinetic_energy = density * energy;
         self.measured.energy = self.measured.film_energy + self.measured.kinetic_energy;
         Ok(())
+    }
+
+    /// Takes from the velocities, as the air around sees them, how it flows along films that hang on wires: those stay.
+    fn leave_on_wires(&mut self) {
+        let Self { geometry, wires, clusters, velocities, ambient, .. } = self;
+        for (v, u) in ambient.by_sources.iter().enumerate() {
+            if !clusters.is_free(v) && !wires.held()[v] {
+                velocities[v] -= *u - geometry.ranges[v].projector * *u;
+            }
+        }
     }
 
     /// Lets circulation diffuse, `diffusivity` in m^2/s, for `dt` seconds.
@@ -338,6 +375,17 @@ impl Sheet {
     #[must_use]
     pub fn impulse_gained(&self, forces: &[DVec3], density: f64, dt: f64) -> Vec<DVec3> {
         self.clusters.sums(forces).into_iter().map(|force| force * (dt / density)).collect()
+    }
+
+    /// Impulse per density that each free cluster gains in `dt` seconds as gas that comes in strains the air around it, m^4/s.
+    #[must_use]
+    pub fn impulse_strained(&self, positions: &[DVec3], potentials: &[f64], dt: f64) -> Vec<DVec3> {
+        let Self { layout, clusters, ambient: Ambient { by_sources, .. }, .. } = self;
+        if by_sources.is_empty() {
+            return vec![DVec3::ZERO; clusters.len()];
+        }
+        let rates = ambient::strained_impulses(layout, positions, potentials, by_sources);
+        clusters.sums(&rates).into_iter().map(|rate| rate * dt).collect()
     }
 
     /// Gives free clusters the impulse per density (m^4/s) that they shall have, at the shape last measured; those with a vertex in `touching`

@@ -24,12 +24,14 @@ pub fn kick_again(world: &mut World) {
     });
 }
 
-/// Gives every free cluster the impulse that it had, and what external forces have given it since; clusters in contact have theirs together.
+/// Gives every free cluster the impulse that it had, and what external forces and gas that comes in have given it since; clusters in contact have theirs together.
 pub fn keep_impulse(world: &mut World) {
     on_arrival(world, |world, work, substep| {
         let SheetWork { sheet, state, forces, impulses, touching, report, .. } = work;
         let gained = sheet.impulse_gained(forces, world.resource::<SheetRules>().density, substep.length);
-        let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
+        let strained = sheet.impulse_strained(&state.positions, &state.potentials, substep.length);
+        let gains = gained.into_iter().zip(strained).map(|(gain, strained)| gain + strained);
+        let wanted: Vec<DVec3> = impulses.iter().zip(gains).map(|(p, gain)| *p + gain).collect();
         let correction = sheet.keep_impulse(&state.positions, &wanted, touching, &mut state.potentials);
         report.impulse_correction = report.impulse_correction.max(correction);
         Ok(())

@@ -1,4 +1,4 @@
-//! What changes the potentials: tension and external forces, wires.
+//! What moves the air and changes the potentials: wind, gas that comes in, tension and external forces, wires.
 
 use bevy_ecs::world::World;
 use froth_components::authored::field::Wind;
@@ -6,10 +6,13 @@ use froth_components::kind::MeshVertex;
 use froth_components::motion::{Pinned, Position};
 use glam::DVec3;
 
+use super::motion::unresolved_volume;
 use super::settings::SheetRules;
 use super::work::{SheetWork, external_forces, load, with_work};
+use crate::bubbles::gas::BubbleGas;
 use crate::rows::read_column;
 use crate::stage::Stage;
+use crate::tracker::films::MeshRules;
 use crate::tracker::wires::{Holders, WireLag};
 
 /// Looks up how fast the wind is.
@@ -19,7 +22,17 @@ use crate::tracker::wires::{Holders, WireLag};
 pub fn let_wind_blow(world: &mut World) {
     with_work(world, Stage::Forces, |world, work, substep| {
         let mut winds = world.query::<&Wind>();
-        work.wind = winds.iter(world).map(|wind| wind.velocity.at(substep.time).si()).sum();
+        work.sheet.ambient.wind = winds.iter(world).map(|wind| wind.velocity.at(substep.time).si()).sum();
+        Ok(())
+    });
+}
+
+/// Works out how gas that comes into bubbles pushes the air around away.
+pub fn push_by_gas(world: &mut World) {
+    with_work(world, Stage::Forces, |world, work, substep| {
+        let inflows = world.resource::<BubbleGas>().inflows(substep.time, substep.time + substep.length);
+        let unresolved = unresolved_volume(&world.resource::<MeshRules>().policy);
+        work.sheet.inflate(&work.state.positions, &inflows, unresolved);
         Ok(())
     });
 }
@@ -55,9 +68,8 @@ pub fn carry_by_wires(world: &mut World) {
     };
     with_work(world, Stage::Dynamics, |world, work, substep| {
         work.wire_velocities = velocities(world, substep.time, substep.length);
-        let against_wind = work.wires_in_wind();
-        let SheetWork { sheet, state, report, .. } = work;
-        sheet.hold(&state.positions, &against_wind, &mut state.potentials)?;
+        let SheetWork { sheet, state, wire_velocities, report, .. } = work;
+        sheet.hold(&state.positions, wire_velocities, &mut state.potentials)?;
         report.wire_iterations = report.wire_iterations.max(sheet.measured.wires.iterations);
         Ok(())
     });

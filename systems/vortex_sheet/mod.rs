@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `Clock` | capillary waves, speed and strain limit steps and substeps | `step_length` |
 //! | `Geometry` | area vectors, volume gradients; columns of shape | `geometry` |
-//! | `Forces` | wind: everything else is seen from a frame that goes with it | `dynamics` |
+//! | `Forces` | wind, and gas that comes in: everything else is seen from a frame that goes with them | `dynamics` |
 //! | `Dynamics` | tension and external forces change the potentials | `dynamics` |
 //! | `Dynamics` | circulation on wires, so that films go with them | `dynamics` |
 //! | `Velocity` | sheet strengths, Biot-Savart, fluxes, velocities, convection | `velocity` |

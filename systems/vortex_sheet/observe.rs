@@ -20,7 +20,7 @@ use crate::tracker::tension::{BubbleTensions, film_energy};
 ///
 /// The kinetic energy, and the energy of films and air together, are those of the step's last evaluation, which comes before its last move:
 /// the sum over pairs is not worked out once more for a number. The impulse is that of the clusters that no wire holds. In a wind both are
-/// those against it.
+/// those against it, and neither has what gas that comes in does to the air around.
 pub fn observe_films(
     vertices: Query<(&Area, &Velocity, &LiquidVolume), With<MeshVertex>>,
     work: Res<SheetWork>,

@@ -26,17 +26,15 @@ fn sliding_interval(world: &World) -> f64 {
 pub fn flow_by_biot_savart(world: &mut World) {
     with_work(world, Stage::Velocity, |world, work, substep| {
         let rules = *world.resource::<SheetRules>();
-        let against_wind = work.wires_in_wind();
-        let SheetWork { sheet, state, wind, report, .. } = work;
+        let SheetWork { sheet, state, wire_velocities, report, .. } = work;
         sheet.flow(
             &state.positions,
             &state.potentials,
-            &against_wind,
+            wire_velocities,
             rules.density,
             &rules.sliding,
             sliding_interval(world).max(substep.length),
         )?;
-        sheet.velocities.iter_mut().for_each(|w| *w += *wind);
         report.evaluations += 1;
         let velocities: Vec<Velocity> = sheet.velocities.iter().map(|w| Velocity(*w)).collect();
         fill_column::<MeshVertex, _>(world, &velocities);

@@ -34,8 +34,6 @@ pub struct SheetWork {
     pub has_arrived: bool,
     /// Velocities of held vertices, m/s; zero elsewhere.
     pub wire_velocities: Vec<DVec3>,
-    /// Velocity of the wind, m/s: the same everywhere.
-    pub wind: DVec3,
     /// External forces per vertex, N.
     pub forces: Vec<DVec3>,
     /// Impulse per density of the free clusters at the start of the substep, m^4/s.
@@ -87,7 +85,6 @@ impl SheetWork {
             is_under_way: false,
             has_arrived: false,
             wire_velocities: Vec::new(),
-            wind: DVec3::ZERO,
             forces: Vec::new(),
             impulses: Vec::new(),
             kept_impulses: Vec::new(),
@@ -96,12 +93,6 @@ impl SheetWork {
             energy_before: None,
             report: StepReport::default(),
         })
-    }
-
-    /// Velocities of held vertices against the wind, m/s.
-    #[must_use]
-    pub fn wires_in_wind(&self) -> Vec<DVec3> {
-        self.wire_velocities.iter().map(|u| *u - self.wind).collect()
     }
 }
 

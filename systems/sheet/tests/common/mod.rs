@@ -27,6 +27,8 @@ pub struct Film {
     pub heads: Vec<f64>,
     pub settings: Settings,
     pub volumes: BTreeMap<Region, f64>,
+    /// Rates at which gas comes into regions, m^3/s.
+    pub inflows: BTreeMap<Region, f64>,
     pub wire_velocities: Vec<DVec3>,
     pub forces: Vec<DVec3>,
     /// Seconds since the start.
@@ -107,6 +109,7 @@ impl Film {
             heads: vec![0.0; sides],
             settings,
             volumes,
+            inflows: BTreeMap::new(),
             wire_velocities: vec![DVec3::ZERO; vertices],
             forces: Vec::new(),
             time: 0.0,
@@ -145,9 +148,10 @@ impl Film {
 
     /// Evaluates flow and rates at the state as it is.
     pub fn evaluate(&mut self, dt: f64) {
-        let Self { sheet, state, settings, forces, wire_velocities, .. } = self;
+        let Self { sheet, state, settings, forces, wire_velocities, inflows, .. } = self;
         let forcing = Forcing { tension: Weights::Uniform(settings.tension), density: settings.density, forces };
         sheet.measure(&state.positions);
+        sheet.inflate(&state.positions, inflows, 0.0);
         sheet.load(&state.positions, &forcing);
         sheet.hold(&state.positions, wire_velocities, &mut state.potentials).unwrap();
         let SheetState { positions, potentials } = &*state;
@@ -174,6 +178,9 @@ impl Film {
             }
         }
         self.heads.clone_from(&self.sheet.heads);
+        for (region, inflow) in &self.inflows {
+            *self.volumes.get_mut(region).unwrap() += inflow * dt;
+        }
         if settings.keeps_volumes {
             self.corrected = self.sheet.meet_volumes(&mut self.state.positions, &self.volumes, 0.0).unwrap();
         }
@@ -189,7 +196,9 @@ impl Film {
                 forces: &self.forces,
             };
             let gained = self.sheet.impulse_gained(forcing.forces, forcing.density, dt);
-            let wanted: Vec<DVec3> = impulses.iter().zip(gained).map(|(p, gain)| *p + gain).collect();
+            let strained = self.sheet.impulse_strained(&self.state.positions, &self.state.potentials, dt);
+            let gains = gained.into_iter().zip(strained).map(|(gain, strained)| gain + strained);
+            let wanted: Vec<DVec3> = impulses.iter().zip(gains).map(|(p, gain)| *p + gain).collect();
             self.sheet.keep_impulse(&self.state.positions, &wanted, &[], &mut self.state.potentials);
         }
         centre(&self.sheet.layout, &mut self.state.potentials);

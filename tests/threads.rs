@@ -33,6 +33,12 @@ fn films_in_air_do_not_depend_on_threads_either_however_pairs_are_summed() {
     }
 }
 
+#[test]
+fn air_that_gas_pushes_away_does_not_depend_on_threads_either() {
+    let blown = r#"[ Sphere(centre: (-0.1, 0, 0), radius: "2 cm"), Film(thickness: Uniform("400 nm")), Volumes(of: ["50 ml"], within: "0.035 s") ],"#;
+    assert_independent_of_threads(&sheets("Direct").replacen("[ Gravity", &format!("{blown} [ Gravity"), 1), 1.0);
+}
+
 fn assert_independent_of_threads(scene: &str, resolution: f64) -> TempDir {
     let parent = tempfile::tempdir().unwrap();
     let folder = |threads: usize| parent.path().join(threads.to_string());

@@ -15,6 +15,10 @@ use crate::quantity::{Refusal, RefusalKind, Time, Volume, range};
 ///
 /// The gas is given, so it goes with the bubble: one that bursts leaves what it should have had by then to the region that it
 /// joins, and parts of one that divides share what is still to come.
+///
+/// Under vortex sheets the air feels it: what comes into a bubble pushes everything else away, other bubbles and films on wires too, as a
+/// source of `Q` m^3/s does, at `Q/(4 pi d^2)` from afar. It comes in evenly all over the bubble; there is no jet. Under geometric flow
+/// the films of the bubble itself move, and nothing else.
 #[derive(Component, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Volumes {

@@ -181,6 +181,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         summary: "a ring that sweeps through the air blows bubbles",
         text: include_str!("../scenes/sweeping_ring.ron"),
     },
+    BuiltInScene {
+        name: "inflating_bubble",
+        summary: "a bubble that is blown up pushes bubbles and a film on a ring away",
+        text: include_str!("../scenes/inflating_bubble.ron"),
+    },
 ];
 
 /// The built-in scene of a name.

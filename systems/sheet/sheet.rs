@@ -3,7 +3,7 @@
 //! | stage | function | equation |
 //! |---|---|---|
 //! | geometry | [`Sheet::measure`] | area vectors, volume gradients |
-//! | gas that comes in | [`Sheet::inflate`] | its flow `u_s` in the [`ambient`](crate::ambient) air |
+//! | gas that comes in | [`Sheet::inflate`] | its flow `u_s` in the [`ambient`] air |
 //! | tension | [`Sheet::load`] | `d phi/dt = -p/rho` |
 //! | wires | [`Sheet::hold`] | fluxes on wires are given |
 //! | Biot-Savart | [`Sheet::flow`] | strengths, vector potential, fluxes, velocities, convection |
@@ -183,7 +183,7 @@ impl Sheet {
     }
 
     /// Works out how gas that comes into closed regions at rates of `inflows` (m^3/s) moves the air around, with the films where they were
-    /// last measured: [`ambient`](crate::ambient). Bubbles smaller than `unresolved` m^3 push it as those of that volume.
+    /// last measured: [`ambient`]. Bubbles smaller than `unresolved` m^3 push it as those of that volume.
     pub fn inflate(&mut self, positions: &[DVec3], inflows: &BTreeMap<Region, f64>, unresolved: f64) {
         let Self { layout, geometry, incidence, ambient: Ambient { by_sources, .. }, .. } = self;
         by_sources.clear();

@@ -46,6 +46,26 @@ pub const GALLERY: &[BuiltInScene] = &[
         text: include_str!("../scenes/resting_bubble.ron"),
     },
     BuiltInScene {
+        name: "two_bubbles_contact",
+        summary: "two bubbles drift together and share a wall",
+        text: include_str!("../scenes/two_bubbles_contact.ron"),
+    },
+    BuiltInScene {
+        name: "double_bubble_sizes",
+        summary: "a small bubble on a large one: their wall is curved",
+        text: include_str!("../scenes/double_bubble_sizes.ron"),
+    },
+    BuiltInScene {
+        name: "three_bubbles_contact",
+        summary: "three bubbles close up around a border",
+        text: include_str!("../scenes/three_bubbles_contact.ron"),
+    },
+    BuiltInScene {
+        name: "four_bubbles_contact",
+        summary: "four bubbles close up around a point where four borders meet",
+        text: include_str!("../scenes/four_bubbles_contact.ron"),
+    },
+    BuiltInScene {
         name: "sphere",
         summary: "a bumpy bubble becomes a sphere",
         text: include_str!("../scenes/sphere.ron"),

@@ -22,6 +22,7 @@ use froth_components::motion::{
     ExternalAcceleration, ExternalPressure, Normal, NormalSpeed, Position, Velocity, VelocityGradient,
 };
 use froth_systems::forces;
+use froth_systems::melp::contact::{self, Contacts};
 use froth_systems::melp::discretise::{AuthoredFilm, DiscreteFilm, Sampling};
 use froth_systems::melp::frames::{self, FilmFrames};
 use froth_systems::melp::normal_motion::NormalMotion;
@@ -53,15 +54,18 @@ pub const METHOD: Method = Method {
 pub fn assemble(plan: &mut SchedulePlan) {
     let always = Requires::nothing;
     let liquid = Requires::kind::<LagrangianParticle>;
+    let several = || Requires::that("several films", has_several_films);
     let elastic = || liquid().and(Requires::that("surfactant elasticity above 0", is_elastic));
     plan.add(Stage::Clock, "follow free films", frames::follow_films, always());
     plan.add(Stage::Clock, "limit the step by speed (CFL)", step_length::limit_step_by_speed, always());
     plan.add(Stage::Clock, "limit substeps by tension", normal_motion::limit_step_by_tension, always());
+    plan.add(Stage::Clock, "limit substeps by the approach of films", contact::limit_step_by_approach, several());
     plan.add(Stage::Gather, "build the stencil", links::build_stencil, always());
     plan.add(Stage::Gather, "enter the films' frames", frames::enter_frames, liquid());
     plan.add(Stage::Gather, "link the particle sets and gather liquid (L2E)", gather::gather_liquid, liquid());
     plan.add(Stage::Gather, "measure concentration", measure::measure_concentration, liquid());
     plan.add(Stage::Geometry, "measure areas and curvature", measure::measure_geometry, always());
+    plan.add(Stage::Geometry, "find where films touch", contact::find_contacts, always());
     plan.add(Stage::Geometry, "measure thickness", measure::measure_thickness, liquid());
     plan.add(Stage::Geometry, "measure gas pressure", measure::measure_pressure, always());
     plan.add(Stage::Forces, "clear external forces", forces::clear::<EulerianParticle>, always());
@@ -84,6 +88,10 @@ pub fn assemble(plan: &mut SchedulePlan) {
     plan.add(Stage::Topology, "sort the liquid's rows", sorting::sort_material, liquid());
     plan.add(Stage::Observe, "measure films", observe::observe_films, always());
     plan.add(Stage::Observe, "measure the liquid", observe::observe_liquid, liquid());
+}
+
+fn has_several_films(world: &World) -> bool {
+    world.get_resource::<Lamellae>().is_some_and(|lamellae| lamellae.films.len() > 1)
 }
 
 fn is_elastic(world: &World) -> bool {
@@ -128,6 +136,7 @@ pub fn register(world: &mut World) {
     world.init_resource::<FilmFrames>();
     world.init_resource::<Transfers>();
     world.init_resource::<TangentialFlow>();
+    world.init_resource::<Contacts>();
     world.init_resource::<NormalMotion>();
     world.init_resource::<Solvers>();
 }

@@ -28,6 +28,8 @@ mod mesh_run;
 mod minima;
 mod operators;
 pub mod oscillation;
+mod particle_clusters;
+mod particle_films;
 mod pulled_double_bubble;
 mod redistribution;
 mod resting_bubble;
@@ -158,6 +160,12 @@ pub const LAWS: &[Law] = &[
         summary: "a bubble at rest at 1 atm, with the mass of a real film, stays at rest",
         source: "the volume is constant, speeds decay, no limit is reached",
         measure: resting_bubble::measure,
+    },
+    Law {
+        name: "particle_clusters",
+        summary: "clusters of particles come to rest with Plateau's angles and Laplace's pressures",
+        source: "Deng 2022, tables 2 and 3",
+        measure: particle_clusters::measure,
     },
     Law {
         name: "sphere_volume",

@@ -23,7 +23,7 @@ use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::system::{Query, Res, ResMut};
 use froth_components::clock::Clock;
-use froth_components::film::{Area, ShapeOperator, SurfaceTension, Surfactant, Thickness};
+use froth_components::film::{ShapeOperator, SurfaceTension, Surfactant, Thickness};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle};
 use froth_components::lamella::{Lamella, Lamellae};
@@ -42,12 +42,8 @@ type Places<'w, 's> = Query<
 >;
 
 /// Columns of what a carrier moves with.
-type Moving<'w, 's> = Query<
-    'w,
-    's,
-    (&'static Area, &'static Thickness, &'static mut NormalSpeed, &'static mut Velocity),
-    With<EulerianParticle>,
->;
+type Moving<'w, 's> =
+    Query<'w, 's, (&'static Thickness, &'static mut NormalSpeed, &'static mut Velocity), With<EulerianParticle>>;
 
 /// Moves the carriers with their films' frames and along their normals, rebuilds the stencil there and refits normals and
 /// shape operators. The flow turns with the normals; what that does to the momentum of a free film is given back to it.
@@ -68,27 +64,26 @@ pub fn deform_film(
     let (regions, mut positions, mut normals, mut shapes) = columns_mut(&mut carriers);
     let positions = positions.bypass_change_detection();
     let normals = normals.bypass_change_detection();
-    let (areas, thickness, mut speeds, mut velocities) = columns_mut(&mut moving);
+    let (thickness, mut speeds, mut velocities) = columns_mut(&mut moving);
     let step = clock.substep_length();
     flow.follow(&transfers.normals, normals, step);
     let before = normals.to_vec();
     let mut relative: Vec<f64> = (0..before.len()).map(|i| motion.displacement[i] / step).collect();
-    let momentum = |normals: &[Normal], flow: &[DVec3], speeds: &[f64]| -> Vec<Momentum> {
-        let films = lamellae.films.iter().filter(|film| film.rim.is_none());
-        films.map(|film| Momentum::of(film, liquid.density, normals, areas, thickness, flow, speeds)).collect()
-    };
-    let was = momentum(&before, &flow.solved, &relative);
+    let density = liquid.density;
+    let was = Momentum::of_films(&lamellae, density, &before, &stencil.0.areas, thickness, &flow.solved, &relative);
     for (i, (x, n)) in positions.iter_mut().zip(&before).enumerate() {
         x.0 += frames.of(regions[i]) * step + n.0 * motion.displacement[i];
     }
     let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
     let spacing = lamellae.spacing;
-    stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
+    stencil.build_in_passing(Points { positions, normals, regions, wall, wall_regions, spacing });
     refit(&stencil.0, spacing, positions, normals, shapes.bypass_change_detection());
     flow.turn(&before, normals);
-    let is = momentum(normals, &flow.present, &relative);
+    let areas = &stencil.0.areas;
+    let is = Momentum::of_films(&lamellae, density, normals, areas, thickness, &flow.present, &relative);
     for (is, was) in is.iter().zip(&was) {
-        let shift = mean_motion(was.momentum - is.momentum, is.mass);
+        let frame = frames.of(regions[is.rows.start]);
+        let shift = is.seen_from(-frame).shift_back_to(&was.seen_from(-frame));
         motion.momentum_correction = motion.momentum_correction.max(shift.length());
         for i in is.rows.clone() {
             let n = normals[i].0;
@@ -115,19 +110,43 @@ struct Momentum {
 }
 
 impl Momentum {
+    /// Of all films that no rim holds.
+    fn of_films(
+        lamellae: &Lamellae,
+        density: f64,
+        normals: &[Normal],
+        areas: &[f64],
+        thickness: &[Thickness],
+        flow: &[DVec3],
+        speeds: &[f64],
+    ) -> Vec<Self> {
+        let films = lamellae.films.iter().filter(|film| film.rim.is_none());
+        films.map(|film| Self::of(film, density, normals, areas, thickness, flow, speeds)).collect()
+    }
+
+    /// The same film's from a frame that moves at a velocity relative to this one, m/s.
+    fn seen_from(&self, frame: DVec3) -> Self {
+        Self { rows: self.rows.clone(), momentum: self.momentum - self.mass * frame, mass: self.mass }
+    }
+
+    /// The velocity that, given to the film as a whole, makes its momentum what it was.
+    fn shift_back_to(&self, was: &Self) -> DVec3 {
+        mean_motion(was.momentum - self.momentum, self.mass)
+    }
+
     /// `sum m u + (m + m_air) s n` and `sum m (1 - n n^T) + (m + m_air) n n^T`; without a flow, its normal parts alone.
     fn of(
         film: &Lamella,
         density: f64,
         normals: &[Normal],
-        areas: &[Area],
+        areas: &[f64],
         thickness: &[Thickness],
         flow: &[DVec3],
         speeds: &[f64],
     ) -> Self {
         let (rows, start) = (film.carriers.clone(), film.carriers.start);
-        let normal_part = |i: usize| (density * thickness[i].0 + film.air_mass) * areas[i].0;
-        let flowing_part = |i: usize| if flow.is_empty() { 0.0 } else { density * thickness[i].0 * areas[i].0 };
+        let normal_part = |i: usize| (density * thickness[i].0 + film.air_mass) * areas[i];
+        let flowing_part = |i: usize| if flow.is_empty() { 0.0 } else { density * thickness[i].0 * areas[i] };
         let momentum = ordered_sum(rows.len(), DVec3::ZERO, |k| {
             let i = start + k;
             let along = flow.get(i).copied().unwrap_or_default() * flowing_part(i);
@@ -159,16 +178,17 @@ pub fn redistribute_carriers(
         (&mut NormalSpeed, &mut Surfactant, &mut SurfaceTension, &mut Thickness),
         With<EulerianParticle>,
     >,
-    walls: Query<&Position, With<BoundaryParticle>>,
+    walls: Query<(&Position, &InRegion), With<BoundaryParticle>>,
     lamellae: Res<Lamellae>,
+    liquid: Res<Liquid>,
     melp: Res<Melp>,
     mut stencil: ResMut<FilmStencil>,
     mut solvers: ResMut<Solvers>,
     mut observables: ResMut<Observables>,
     mut faults: ResMut<Faults>,
 ) {
-    let wall = if walls.is_empty() { &[][..] } else { columns(&walls) };
-    let (_, mut positions, mut normals, mut shapes) = columns_mut(&mut carriers);
+    let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
+    let (regions, mut positions, mut normals, mut shapes) = columns_mut(&mut carriers);
     let (positions, normals) = (positions.bypass_change_detection(), normals.bypass_change_detection());
     let shapes = shapes.bypass_change_detection();
     let films: Vec<Range<usize>> = lamellae.films.iter().map(|film| film.carriers.clone()).collect();
@@ -192,6 +212,12 @@ pub fn redistribute_carriers(
     let (mut speeds, mut surfactant, mut tension, mut thickness) = columns_mut(&mut carried);
     let (speeds, surfactant) = (speeds.bypass_change_detection(), surfactant.bypass_change_detection());
     let (tension, thickness) = (tension.bypass_change_detection(), thickness.bypass_change_detection());
+    let density = liquid.density;
+    let momentum = |normals: &[Normal], areas: &[f64], thickness: &[Thickness], speeds: &[NormalSpeed]| {
+        let speeds: Vec<f64> = speeds.iter().map(|s| s.0).collect();
+        Momentum::of_films(&lamellae, density, normals, areas, thickness, &[], &speeds)
+    };
+    let was = momentum(normals, &stencil.0.areas, thickness, speeds);
     let there = |values: Vec<f64>| moved_values(&stencil.0, positions, normals, &moves.displacement, &values);
     let moved_speed = there(speeds.iter().map(|s| s.0).collect());
     let moved_surfactant = there(surfactant.iter().map(|s| s.0).collect());
@@ -205,7 +231,14 @@ pub fn redistribute_carriers(
     }
     lift(&stencil.0, lamellae.spacing, positions, normals, shapes, &moves.displacement);
     refit(&stencil.0, lamellae.spacing, positions, normals, shapes);
-    stencil.0.find_cells(positions, lamellae.spacing);
+    let spacing = lamellae.spacing;
+    stencil.build_for(Points { positions, normals, regions, wall, wall_regions, spacing });
+    // Speeds were read off a smooth field, for other areas: what that does to a film's momentum is given back.
+    for (is, was) in momentum(normals, &stencil.0.areas, thickness, speeds).iter().zip(&was) {
+        let shift = is.shift_back_to(was);
+        observables.raise("momentum_correction", "m/s", shift.length());
+        is.rows.clone().for_each(|i| speeds[i].0 += shift.dot(normals[i].0));
+    }
 }
 
 /// `q + d . grad q` on every carrier.

@@ -107,5 +107,5 @@ pub fn build_stencil(
     let (positions, normals, regions) = columns(&carriers);
     let (wall, wall_regions) = if walls.is_empty() { (&[][..], &[][..]) } else { columns(&walls) };
     let spacing = lamellae.spacing;
-    stencil.0.rebuild(Points { positions, normals, regions, wall, wall_regions, spacing });
+    stencil.build_for(Points { positions, normals, regions, wall, wall_regions, spacing });
 }

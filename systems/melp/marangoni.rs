@@ -16,6 +16,7 @@
 //! Deng 2022, Eqs 13 to 15, with the factor 2 that Eq. 14 lost. DEVIATION: conjugate gradients instead of relaxed
 //! Jacobi; full divergence instead of its tangential part.
 
+use super::contact::Contacts;
 use super::normal_motion::NormalMotion;
 use super::settings::Melp;
 use super::state::{FilmStencil, Solvers, TangentialFlow, Transfers};
@@ -58,6 +59,8 @@ pub struct MarangoniProblem<'a> {
     pub stretching: &'a [f64],
     /// `2 R T / rho`, m^5/(s^2 mol).
     pub mobility: f64,
+    /// Part of the two interfaces that the sheet has, 0.5 to 1: a sheet that shares its film with another bubble's has one.
+    pub interfaces: &'a [f64],
     /// Step, s.
     pub step: f64,
 }
@@ -75,7 +78,7 @@ impl MarangoniProblem<'_> {
         work: &mut Workspace,
     ) -> Result<SolveInfo, NotConverged> {
         let Self { stencil, step, .. } = *self;
-        let resistance: Vec<f64> = self.thickness.iter().map(|eta| 0.5 * self.mobility * step * step / eta).collect();
+        let resistance: Vec<f64> = (0..stencil.len()).map(|i| 0.5 * step * step * self.mobility_on(i)).collect();
         let reaction: Vec<f64> = stencil.areas.iter().zip(self.gathered).map(|(a, g)| a / g).collect();
         let b = self.right_hand_side();
         let coupling = |i: usize, j: usize, k: usize| stencil.weights[k] * (resistance[i] + resistance[j]);
@@ -85,6 +88,11 @@ impl MarangoniProblem<'_> {
         }
         let places = self.positions.iter().map(|x| x.0);
         conjugate_gradient::solve(&system, places, &b, concentration, stop, work)
+    }
+
+    /// `2 R T / (rho eta)` on carrier `i`, by the interfaces that it has.
+    fn mobility_on(&self, i: usize) -> f64 {
+        self.mobility * self.interfaces[i] / self.thickness[i]
     }
 
     fn right_hand_side(&self) -> Vec<f64> {
@@ -106,7 +114,7 @@ impl MarangoniProblem<'_> {
             .with_min_len(256)
             .map(|i| {
                 let slope = self.stencil.gradient(self.positions, self.normals, i, |j| concentration[j]);
-                self.velocity[i] - slope * (self.step * self.mobility / self.thickness[i])
+                self.velocity[i] - slope * (self.step * self.mobility_on(i))
             })
             .collect()
     }
@@ -133,6 +141,7 @@ pub fn solve_marangoni(
     clock: Res<Clock>,
     mut transfers: ResMut<Transfers>,
     motion: Res<NormalMotion>,
+    contacts: Res<Contacts>,
     mut flow: ResMut<TangentialFlow>,
     mut solvers: ResMut<Solvers>,
     mut observables: ResMut<Observables>,
@@ -153,6 +162,7 @@ pub fn solve_marangoni(
         velocity: &flow.solved,
         stretching: &stretching,
         mobility: 2.0 * liquid.thermal_energy() / liquid.density,
+        interfaces: &(0..positions.len()).map(|i| 1.0 - 0.5 * contacts.share(i)).collect::<Vec<_>>(),
         step,
     };
     let films: Vec<Range<usize>> = lamellae.films.iter().map(|film| film.carriers.clone()).collect();

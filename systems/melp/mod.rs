@@ -6,6 +6,7 @@
 //! | L2E transfer | [`gather`], weights in [`links`], neighbours in [`tiles`] | Algorithm 1, Eqs 6, 7 |
 //! | thickness, pressure | [`measure`] | Algorithm 2, Eqs 8, 9, 11 |
 //! | normal dynamics | [`normal_motion`] | Algorithm 3, Eq. 12 |
+//! | regions: contact, shared tension | [`contact`], implicit part in [`normal_system`] | section 5 |
 //! | Marangoni solve | [`marangoni`], [`inertia`] | Algorithm 3, Eqs 14, 15 |
 //! | E2L transfer | [`scatter`] | Algorithm 4, Eqs 16 to 18 |
 //! | E advance, redistribution | [`carriers`], [`redistribution`] | Algorithms 5, 6, Eqs 19, 20 |
@@ -14,6 +15,7 @@
 //! Carriers are Eulerian particles (E), material particles Lagrangian ones (L).
 
 pub mod carriers;
+pub mod contact;
 pub mod discretise;
 pub mod frames;
 pub mod gather;
@@ -23,6 +25,7 @@ pub mod marangoni;
 pub mod material;
 pub mod measure;
 pub mod normal_motion;
+pub mod normal_system;
 pub mod observe;
 pub mod redistribution;
 pub mod scatter;

@@ -7,12 +7,13 @@
 //! Symplectic Euler in substeps `d <= 0.8 dx / c`, `c = sqrt(2 sigma / (rho eta + m_air))`, each on its own geometry. The
 //! flux through the middle of the move, `a (1 + kappa zeta/2)`, changes the volume.
 //!
-//! The gas is implicit in closed form (a rank-one system): stable at 1 atm, where the breathing mode of a 5 cm bubble
-//! would demand steps of 1e-5 s. Its volume is a state, advanced by the film's own flux.
+//! Gas and contacts are implicit ([`NormalSystem`]): stable at 1 atm, where the breathing mode of a 5 cm bubble would demand
+//! steps of 1e-5 s, and for films pressed together. The gas's volume is a state, advanced by the film's own flux.
 //!
-//! Forces within a closed film (tension, its gradient, gas) must not move its centre of mass, but the projection of
-//! the pair forces on the normals leaves a remainder; it is returned as a rigid translation of the normal speeds,
-//! mass-weighted. External forces enter outside that balance and move the film freely.
+//! Forces within a cluster of films that touch (tension, its gradient, gas, contact) must not move its centre of mass, but the
+//! projection of the pair forces on the normals leaves a remainder; it is returned as a rigid translation of the normal speeds,
+//! mass-weighted, of the cluster as a whole: closing every sheet by itself would shift the angles at borders by 3 degrees. External
+//! forces enter outside that balance and move the films freely.
 //!
 //! # Source
 //! Deng 2022, Algorithm 3, Eq. 12 (sign of the curvature and factor 2 corrected).
@@ -23,14 +24,19 @@
 //! In the film's [frame](super::frames), `-2 u . grad s` (the film's own advection of its normal momentum) is left out: relative error `u/c`, a few per cent
 //! of the film's share of the inertia.
 
+use super::contact::Contacts;
 use super::frames::FilmFrames;
+use super::normal_system::{GasSpring, NormalSystem};
 use super::settings::Melp;
-use super::state::FilmStencil;
+use super::state::{FilmStencil, Solvers};
 use crate::clock::StepLimits;
+use crate::observe::{Fault, Faults, Observables};
+use crate::operators::conjugate_gradient::{self, NotConverged, SolveInfo, StopRule, Workspace};
 use crate::operators::stencil::Stencil;
 use crate::operators::tangent::{outer, tangential};
 use crate::rows::reduce::{ordered_max, ordered_sum};
 use crate::rows::{columns, columns_mut};
+use crate::stage::Stage;
 use bevy_ecs::query::{With, Without};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Query, Res, ResMut};
@@ -40,13 +46,12 @@ use froth_components::gas::IdealGas;
 use froth_components::gas::{GasExponent, GasVolume, ReferencePressure, ReferenceVolume};
 use froth_components::identity::InRegion;
 use froth_components::kind::{BoundaryParticle, EulerianParticle, Region};
-use froth_components::lamella::{Lamellae, Rim};
+use froth_components::lamella::{Lamella, Lamellae, Rim};
 use froth_components::material::{Atmosphere, Liquid};
 use froth_components::motion::{ExternalAcceleration, ExternalPressure, NormalSpeed, Velocity};
 use froth_components::motion::{Normal, Position};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Longest substep, in units of `dx / c`. The fastest modes have 1.67 c/dx on even carriers and 1.93 c/dx on noisy ones;
 /// symplectic Euler is stable below 2, so the explicit limit is 1.0 to 1.2.
@@ -59,11 +64,22 @@ pub const SUBSTEP: f64 = 0.8;
 /// How far beyond its rim a film goes on, in distances of a carrier inside it (Morris 1997: 0.5 to 1.5).
 const FARTHEST: f64 = 2.0;
 
+/// Damping of gaps in contact, in `sqrt(k m)` of their stiffness and the sheet's inertia: 1 is critical for two equal sheets. The
+/// liquid between two films is squeezed out; nothing else brakes them.
+const CONTACT_DAMPING: f64 = 1.0;
+
+/// When the solve for the speeds may stop.
+const STOP: StopRule = StopRule { tolerance: 1e-9, max_iterations: 400 };
+
 /// What the normal motion reads; all slices are per carrier.
 #[derive(Clone, Copy)]
 pub struct NormalForces<'a> {
+    /// The films.
+    pub lamellae: &'a Lamellae,
     /// Pair weights and areas.
     pub stencil: &'a Stencil,
+    /// Where films touch.
+    pub contacts: &'a Contacts,
     /// Places at the substep's start.
     pub positions: &'a [Position],
     /// Boundary particles.
@@ -72,6 +88,8 @@ pub struct NormalForces<'a> {
     pub normals: &'a [Normal],
     /// Surface tension of one interface, N/m.
     pub tension: &'a [f64],
+    /// Half the tension of the sheet: that of one interface where it is free, of half an interface where it is shared, N/m.
+    pub shared: &'a [f64],
     /// Sum of principal curvatures, 1/m.
     pub curvature: &'a [f64],
     /// External force per area along the normal: pressures, weight, centrifugal force, Pa.
@@ -80,6 +98,8 @@ pub struct NormalForces<'a> {
     pub tangential: &'a [DVec3],
     /// Inertia per area, film and air, kg/m^2.
     pub inertia: &'a [f64],
+    /// Velocity of the frame that each carrier's film is solved in, m/s.
+    pub frame: &'a (dyn Fn(usize) -> DVec3 + Sync),
 }
 
 /// The gas inside a closed film.
@@ -111,66 +131,122 @@ impl NormalMotion {
     }
 }
 
-impl NormalForces<'_> {
-    /// Advances the film in `rows` by `step` seconds; `speeds` is per carrier, `gas` is `None` for a film that
-    /// encloses none; without a rim that holds it, forces within it balance.
-    pub fn advance(
-        &self,
-        rows: Range<usize>,
-        step: f64,
-        speeds: &mut [f64],
-        gas: Option<&mut EnclosedGas>,
-        rim: Option<Rim>,
-        motion: &mut NormalMotion,
-    ) {
-        let areas = &self.stencil.areas[rows.clone()];
-        let mass: Vec<f64> = areas.iter().zip(&self.inertia[rows.clone()]).map(|(a, m)| a * m).collect();
-        let tension: Vec<f64> =
-            rows.clone().into_par_iter().with_min_len(256).map(|i| self.tension_on(rim, i)).collect();
-        let speeds = &mut speeds[rows.clone()];
-        for (k, s) in speeds.iter_mut().enumerate() {
-            *s += step * (tension[k] + self.load[rows.start + k] * areas[k]) / mass[k];
-        }
-        let pressure = gas.as_deref().map_or(0.0, |gas| gas.excess_pressure_after(step, areas, &mass, speeds));
-        speeds.iter_mut().zip(areas).zip(&mass).for_each(|((s, a), m)| *s += step * pressure * a / m);
-        if rim.is_none() {
-            let shift = self.balance(rows.clone(), &tension, &mass, pressure) * -step;
-            speeds.iter_mut().zip(&self.normals[rows.clone()]).for_each(|(s, n)| *s += n.0.dot(shift));
-            motion.momentum_correction = motion.momentum_correction.max(shift.length());
-        }
-        let displacement = &mut motion.displacement[rows.clone()];
-        displacement.iter_mut().zip(&*speeds).for_each(|(zeta, s)| *zeta = step * s);
-        if let Some(gas) = gas {
-            // The flux through the middle of the move: exact to second order in the displacement.
-            let swept = |k: usize| areas[k] * (1.0 + 0.5 * self.curvature[rows.start + k] * displacement[k]);
-            gas.volume += ordered_sum(areas.len(), 0.0, |k| swept(k) * displacement[k]);
-        }
-    }
-
-    /// The acceleration of a free film's centre by forces within it, which ought to be zero, m/s^2.
-    fn balance(&self, rows: Range<usize>, tension: &[f64], mass: &[f64], pressure: f64) -> DVec3 {
-        let (start, areas) = (rows.start, &self.stencil.areas);
-        let tensor = ordered_sum(mass.len(), DMat3::ZERO, |k| {
-            let n = self.normals[start + k].0;
-            outer(mass[k], n, n)
-        });
-        let force = ordered_sum(mass.len(), DVec3::ZERO, |k| {
-            let i = start + k;
-            self.normals[i].0 * (tension[k] + pressure * areas[i]) + self.tangential[i] * areas[i]
-        });
-        tensor.inverse() * force
-    }
+/// Gap pressures of the contacts, per carrier: what they are at the substep's start, and how they yield.
+struct Pressing {
+    /// `a dE/dg`, N.
+    pull: Vec<f64>,
+    /// `Y`, kg.
+    yielding: Vec<f64>,
 }
 
-impl EnclosedGas {
-    /// Pressure above the outside at the end of a step in which it pushes a film of the given areas, masses and speeds:
-    /// implicit in closed form, for the volume's answer is the film's own flux.
-    fn excess_pressure_after(&self, step: f64, areas: &[f64], mass: &[f64], speeds: &[f64]) -> f64 {
-        let rate = ordered_sum(areas.len(), 0.0, |k| areas[k] * speeds[k]);
-        let answer = ordered_sum(areas.len(), 0.0, |k| areas[k].powi(2) / mass[k]);
-        let stiffness = self.law.stiffness(self.volume);
-        let excess = self.law.pressure(self.volume) - self.outside;
-        (excess - stiffness * step * rate) / (1.0 + stiffness * step * step * answer)
+impl NormalForces<'_> {
+    /// Advances all films by `step` seconds. `speeds` is per carrier, relative to the films' frames; `gases` per film, `None` for
+    /// one that encloses none. Forces within a cluster of films that no rim holds balance.
+    ///
+    /// # Errors
+    /// [`NotConverged`] with the residual reached.
+    pub fn advance(
+        &self,
+        step: f64,
+        speeds: &mut [f64],
+        gases: &mut [Option<EnclosedGas>],
+        work: &mut Workspace,
+        motion: &mut NormalMotion,
+    ) -> Result<SolveInfo, NotConverged> {
+        let areas = &self.stencil.areas;
+        let mass: Vec<f64> = areas.iter().zip(self.inertia).map(|(a, m)| a * m).collect();
+        let pressing = self.pressing(step);
+        let mut impulse = self.impulse(step, &pressing);
+        let mut springs = Vec::new();
+        for (film, gas) in self.lamellae.films.iter().zip(&*gases) {
+            let (rows, Some(gas)) = (film.carriers.clone(), gas) else { continue };
+            let excess = gas.law.pressure(gas.volume) - gas.outside;
+            rows.clone().for_each(|i| impulse[i] += step * excess * areas[i]);
+            springs.push(GasSpring { rows, stiffness: gas.law.stiffness(gas.volume) * step * step });
+        }
+        let system = NormalSystem::new(self.contacts, &mass, areas, &pressing.yielding, &springs);
+        let b: Vec<f64> = (0..mass.len()).map(|i| mass[i] * speeds[i] + impulse[i]).collect();
+        let before = speeds.to_vec();
+        let info = conjugate_gradient::solve_system(system, &b, speeds, STOP, work)?;
+        for cluster in &self.contacts.clusters {
+            let films = || cluster.iter().map(|&film| &self.lamellae.films[film]);
+            if films().any(|film| film.rim.is_some()) {
+                continue;
+            }
+            // What forces within the cluster did to each carrier: all but its load.
+            let within = |i: usize| mass[i] * (speeds[i] - before[i]) - step * self.load[i] * areas[i];
+            let shift = -self.imbalance(cluster, step, &mass, &within);
+            for i in films().flat_map(|film| film.carriers.clone()) {
+                speeds[i] += self.normals[i].0.dot(shift);
+            }
+            motion.momentum_correction = motion.momentum_correction.max(shift.length());
+        }
+        motion.displacement.iter_mut().zip(&*speeds).for_each(|(zeta, s)| *zeta = step * s);
+        for (film, gas) in self.lamellae.films.iter().zip(gases) {
+            let (rows, Some(gas)) = (film.carriers.clone(), gas) else { continue };
+            // The flux through the middle of the move: exact to second order in the displacement.
+            let zeta = &motion.displacement;
+            let swept = |i: usize| areas[i] * (1.0 + 0.5 * self.curvature[i] * zeta[i]) * zeta[i];
+            gas.volume += ordered_sum(rows.len(), 0.0, |k| swept(rows.start + k));
+        }
+        Ok(info)
+    }
+
+    fn pressing(&self, step: f64) -> Pressing {
+        let areas = &self.stencil.areas;
+        if self.contacts.is_empty() {
+            return Pressing { pull: Vec::new(), yielding: Vec::new() };
+        }
+        let of = |i: usize| {
+            let law = self.contacts.binding(i, self.tension[i]);
+            let damping = CONTACT_DAMPING * (self.contacts.stiffness(self.tension[i]) * self.inertia[i]).sqrt();
+            (areas[i] * law.pull, step * areas[i] * (law.share * damping + step * law.stiffness))
+        };
+        let (pull, yielding) = (0..areas.len()).into_par_iter().with_min_len(512).map(of).unzip();
+        Pressing { pull, yielding }
+    }
+
+    /// Impulse of all but the gas along each carrier's normal over a step, N s: tension, load, contacts as they would be if films
+    /// moved with their frames alone.
+    fn impulse(&self, step: f64, pressing: &Pressing) -> Vec<f64> {
+        let areas = &self.stencil.areas;
+        let mut impulse = vec![0.0; areas.len()];
+        for film in &self.lamellae.films {
+            let start = film.carriers.start;
+            impulse[film.carriers.clone()].par_iter_mut().with_min_len(256).enumerate().for_each(|(k, slot)| {
+                let i = start + k;
+                *slot = step * (self.tension_on(film.rim, i) + self.load[i] * areas[i]);
+            });
+        }
+        if !self.contacts.is_empty() {
+            let pressed = |i: usize| match (pressing.pull[i], pressing.yielding[i]) {
+                (0.0, 0.0) => 0.0,
+                (pull, y) => step * pull + y * self.contacts.opening_of(i, self.normals, self.frame),
+            };
+            let pressures: Vec<f64> = (0..areas.len()).into_par_iter().with_min_len(512).map(pressed).collect();
+            let reaction = impulse.par_iter_mut().enumerate().with_min_len(512);
+            reaction.for_each(|(i, slot)| *slot -= self.contacts.pressed(i, &pressures));
+        }
+        impulse
+    }
+
+    /// Velocity that forces within a cluster gave to its centre over a step, which ought to be zero, m/s; `within` is their impulse
+    /// along each carrier's normal.
+    fn imbalance(&self, cluster: &[usize], step: f64, mass: &[f64], within: &(dyn Fn(usize) -> f64 + Sync)) -> DVec3 {
+        let areas = &self.stencil.areas;
+        let (mut tensor, mut impulse) = (DMat3::ZERO, DVec3::ZERO);
+        for film in cluster {
+            let (start, count) = (self.lamellae.films[*film].carriers.start, self.lamellae.films[*film].carriers.len());
+            tensor += ordered_sum(count, DMat3::ZERO, |k| {
+                let n = self.normals[start + k].0;
+                outer(mass[start + k], n, n)
+            });
+            impulse += ordered_sum(count, DVec3::ZERO, |k| {
+                let i = start + k;
+                self.normals[i].0 * within(i) + self.tangential[i] * (step * areas[i])
+            });
+        }
+        tensor.inverse() * impulse
     }
 }
 
@@ -181,14 +257,14 @@ impl NormalForces<'_> {
         let film: f64 = self
             .stencil
             .weighted_offsets(self.positions, i)
-            .map(|(j, w, d)| w * (self.tension[i] + self.tension[j]) * d.dot(n))
+            .map(|(j, w, d)| w * (self.shared[i] + self.shared[j]) * d.dot(n))
             .sum();
         let mut wall = self.stencil.wall_pairs(self.positions, self.wall, i).peekable();
         if wall.peek().is_none() {
             return film;
         }
         let sag = self.sag(rim, i);
-        film + wall.map(|(w, d)| 2.0 * self.tension[i] * w * (d + sag.at(self.positions[i].0 + d)).dot(n)).sum::<f64>()
+        film + wall.map(|(w, d)| 2.0 * self.shared[i] * w * (d + sag.at(self.positions[i].0 + d)).dot(n)).sum::<f64>()
     }
 
     /// How the film near carrier `i` goes on beyond a flat rim.
@@ -249,7 +325,11 @@ pub fn advance_normal_motion(
     atmosphere: Res<Atmosphere>,
     clock: Res<Clock>,
     frames: Res<FilmFrames>,
+    contacts: Res<Contacts>,
     mut motion: ResMut<NormalMotion>,
+    mut solvers: ResMut<Solvers>,
+    mut observables: ResMut<Observables>,
+    mut faults: ResMut<Faults>,
 ) {
     let wall = if walls.is_empty() { &[][..] } else { columns(&walls) };
     let (positions, normals, shapes, curvature, tension, thickness, pushes, pressures, velocities, regions, mut speeds) =
@@ -268,31 +348,48 @@ pub fn advance_normal_motion(
     let per_carrier = |f: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
         (0..count).into_par_iter().with_min_len(256).map(f).collect()
     };
+    let shared = per_carrier(&|i| tension[i] * (1.0 - 0.5 * contacts.share(i)));
     let forces = NormalForces {
+        lamellae: &lamellae,
         stencil,
+        contacts: &contacts,
         positions,
         wall,
         normals,
         tension: &tension,
+        shared: &shared,
         curvature: &per_carrier(&|i| curvature[i].0),
         load: &per_carrier(&load),
-        tangential: &tension_gradients(stencil, positions, normals, &tension),
+        tangential: &tension_gradients(stencil, positions, normals, &tension, &contacts),
         inertia: &inertia.per_area(thickness),
+        frame: &|i| frames.of(regions[i]),
     };
     let along_frame = |i: usize| frames.of(regions[i]).dot(normals[i].0);
     let mut state: Vec<f64> = speeds.iter().enumerate().map(|(i, s)| s.0 - along_frame(i)).collect();
     motion.reset(count);
-    for (film, (mut volume, reference_volume, reference_pressure, exponent)) in lamellae.films.iter().zip(&mut gases) {
+    let enclosed = |(film, (volume, reference_volume, reference_pressure, exponent)): (&Lamella, GasState)| {
         let law = IdealGas::of(reference_volume, reference_pressure, exponent);
-        let mut gas =
-            film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure });
-        forces.advance(film.carriers.clone(), clock.substep_length(), &mut state, gas.as_mut(), film.rim, &mut motion);
+        film.encloses_gas().then_some(EnclosedGas { law, volume: volume.0, outside: atmosphere.pressure })
+    };
+    let mut enclosed_gases: Vec<Option<EnclosedGas>> = lamellae.films.iter().zip(&gases).map(enclosed).collect();
+    let work = &mut solvers.normal_motion;
+    match forces.advance(clock.substep_length(), &mut state, &mut enclosed_gases, work, &mut motion) {
+        Ok(info) => observables.add("normal_motion_iterations", "1", f64::from(info.iterations)),
+        Err(failed) => {
+            faults.report(Fault::new(Stage::Dynamics, "normal motion", failed.to_string()));
+            return;
+        }
+    }
+    for (gas, (mut volume, ..)) in enclosed_gases.iter().zip(&mut gases) {
         if let Some(gas) = gas {
             volume.0 = gas.volume;
         }
     }
     speeds.iter_mut().zip(&state).enumerate().for_each(|(i, (slot, s))| slot.0 = *s + along_frame(i));
 }
+
+/// A region's gas.
+type GasState<'a> = (&'a GasVolume, &'a ReferenceVolume, &'a ReferencePressure, &'a GasExponent);
 
 /// Inertia of the film and of the air that moves with it.
 struct Inertia<'a> {
@@ -310,12 +407,18 @@ impl Inertia<'_> {
     }
 }
 
-/// `2 grad sigma` on every carrier, Pa: what the tension's gradient does to the liquid.
-fn tension_gradients(stencil: &Stencil, positions: &[Position], normals: &[Normal], tension: &[f64]) -> Vec<DVec3> {
+/// `(2 - chi) grad sigma` on every carrier, Pa: what the tension's gradient does to the liquid.
+fn tension_gradients(
+    stencil: &Stencil,
+    positions: &[Position],
+    normals: &[Normal],
+    tension: &[f64],
+    contacts: &Contacts,
+) -> Vec<DVec3> {
     (0..stencil.len())
         .into_par_iter()
         .with_min_len(256)
-        .map(|i| stencil.gradient(positions, normals, i, |j| tension[j]) * 2.0)
+        .map(|i| stencil.gradient(positions, normals, i, |j| tension[j]) * (2.0 - contacts.share(i)))
         .collect()
 }
 

@@ -1,5 +1,6 @@
 //! What a run of MELP measures in every step.
 
+use super::contact::Contacts;
 use super::gather::MaterialColumns;
 use super::state::FilmStencil;
 use crate::observe::Observables;
@@ -27,15 +28,18 @@ pub fn observe_films(
     liquid: Res<Liquid>,
     atmosphere: Res<Atmosphere>,
     stencil: Res<FilmStencil>,
+    contacts: Res<Contacts>,
     clock: Res<Clock>,
     mut observables: ResMut<Observables>,
 ) {
     let (positions, velocities, speeds, tension, surfactant, thickness) = columns(&carriers);
     let (areas, count) = (&stencil.0.areas, positions.len());
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
-    observables.record("area", "m^2", sum(&|i| areas[i]));
+    // Two sheets that are one film count half each.
+    let film_area = |i: usize| areas[i] * (1.0 - 0.5 * contacts.share(i));
+    observables.record("area", "m^2", sum(&film_area));
     observables.raise("max_speed", "m/s", ordered_max(count, 0.0, |i| velocities[i].0.length()));
-    observables.record("surface_energy", "J", sum(&|i| 2.0 * tension[i].0 * areas[i]));
+    observables.record("surface_energy", "J", sum(&|i| 2.0 * tension[i].0 * film_area(i)));
     let mut air = vec![0.0; count];
     for film in &lamellae.films {
         air[film.carriers.clone()].fill(film.air_mass);

@@ -4,15 +4,35 @@
 use super::links::Link;
 use crate::neighbours::cells::CellList;
 use crate::operators::conjugate_gradient::Workspace;
-use crate::operators::stencil::Stencil;
+use crate::operators::stencil::{Points, Stencil};
 use crate::operators::tangent::{MinimalRotation, tangential};
 use bevy_ecs::resource::Resource;
 use froth_components::motion::{Normal, Position};
 use glam::DVec3;
 
-/// The stencil of the carriers at their present places.
+/// The stencil of the carriers at their present places, and the places and normals it was last built for as a whole.
 #[derive(Resource, Default)]
-pub struct FilmStencil(pub Stencil);
+pub struct FilmStencil(pub Stencil, Vec<(Position, Normal)>);
+
+impl FilmStencil {
+    /// Builds the stencil of these carriers, unless it is the one that stands.
+    pub fn build_for(&mut self, points: Points) {
+        let Points { positions, normals, .. } = points;
+        let stand = self.1.len() == positions.len()
+            && self.1.iter().zip(positions).zip(normals).all(|(((x, n), y), m)| x == y && n == m);
+        if !stand {
+            self.0.rebuild(points);
+            self.1.clear();
+            self.1.extend(positions.iter().copied().zip(normals.iter().copied()));
+        }
+    }
+
+    /// Builds the stencil of carriers whose normals are still those of where they came from.
+    pub fn build_in_passing(&mut self, points: Points) {
+        self.0.rebuild(points);
+        self.1.clear();
+    }
+}
 
 /// How the particle sets are linked, and what was gathered. Places and planes are those of the step's start.
 #[derive(Resource, Default)]
@@ -87,6 +107,8 @@ impl TangentialFlow {
 /// Work spaces of the linear solvers.
 #[derive(Resource, Default)]
 pub struct Solvers {
+    /// Of the normal motion.
+    pub normal_motion: Workspace,
     /// Of the Marangoni solve.
     pub marangoni: Workspace,
     /// Of the redistribution.

@@ -1,4 +1,5 @@
-//! Conjugate gradients preconditioned by [`multigrid`](super::multigrid), with the same bits for any number of threads.
+//! Conjugate gradients, with the same bits for any number of threads: for systems of pairs, preconditioned by
+//! [`multigrid`](super::multigrid), and for whatever is a [`SymmetricSystem`].
 //!
 //! # Source
 //! Hestenes and Stiefel 1952. The relaxed Jacobi iteration of Deng 2022, §4.4.2 needs 20 to 500 times more sweeps at
@@ -51,7 +52,50 @@ pub struct Workspace {
     image: Vec<f64>,
 }
 
-/// Solves `A x = b`, starting from `x`. `places` are where the unknowns stand; the preconditioner uses them.
+/// A symmetric, positive (semi)definite system.
+pub trait SymmetricSystem {
+    /// Writes `A x`.
+    fn multiply(&self, x: &[f64], image: &mut [f64]);
+    /// Diagonal of `A`, or an approximation of it, by which residuals are measured.
+    fn diagonal(&self) -> &[f64];
+    /// Writes an approximation of `A^-1 r`, itself symmetric and positive definite.
+    fn precondition(&mut self, r: &[f64], corrected: &mut [f64]);
+    /// Whether constants are `A`'s kernel: the right-hand side must sum to zero then.
+    fn is_singular(&self) -> bool {
+        false
+    }
+}
+
+/// A system of pairs with its multigrid, which is made when it is first needed.
+struct Preconditioned<'a, P> {
+    system: &'a PairSystem<'a>,
+    places: Option<P>,
+    multigrid: Option<Multigrid>,
+    is_singular: bool,
+}
+
+impl<P: Iterator<Item = DVec3>> SymmetricSystem for Preconditioned<'_, P> {
+    fn multiply(&self, x: &[f64], image: &mut [f64]) {
+        let system = self.system;
+        image.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, q)| *q = system.row(x, i));
+    }
+
+    fn diagonal(&self) -> &[f64] {
+        &self.system.diagonal
+    }
+
+    fn precondition(&mut self, r: &[f64], corrected: &mut [f64]) {
+        let (system, places) = (self.system, &mut self.places);
+        let made = || Multigrid::new(system, places.take().into_iter().flatten());
+        self.multigrid.get_or_insert_with(made).apply(system, r, corrected);
+    }
+
+    fn is_singular(&self) -> bool {
+        self.is_singular
+    }
+}
+
+/// Solves a system of pairs, starting from `x`. `places` are where the unknowns stand; the preconditioner uses them.
 ///
 /// If there is no reaction, constants are `A`'s kernel: `b` must sum to zero, and the part of the residual along
 /// constants is removed in every iteration.
@@ -67,42 +111,54 @@ pub fn solve(
     work: &mut Workspace,
 ) -> Result<SolveInfo, NotConverged> {
     let is_singular = system.reaction.iter().all(|m| *m == 0.0);
-    work.begin(system, b, x, is_singular);
-    let whole = size(system, b);
+    let system = Preconditioned { system, places: Some(places), multigrid: None, is_singular };
+    solve_system(system, b, x, stop, work)
+}
+
+/// Solves `A x = b`, starting from `x`.
+///
+/// # Errors
+/// [`NotConverged`] with the residual reached.
+pub fn solve_system(
+    mut system: impl SymmetricSystem,
+    b: &[f64],
+    x: &mut [f64],
+    stop: StopRule,
+    work: &mut Workspace,
+) -> Result<SolveInfo, NotConverged> {
+    work.begin(&system, b, x);
+    let whole = size(system.diagonal(), b);
     let failed = |iterations, residual| NotConverged { iterations, residual, tolerance: stop.tolerance };
     let ratio = |square: f64| if square > 0.0 { (square / whole).sqrt() } else { square };
-    let mut info = SolveInfo { iterations: 0, residual: ratio(size(system, &work.residual)) };
-    if info.residual <= stop.tolerance {
-        return Ok(info);
-    }
-    let mut multigrid = Multigrid::new(system, places);
+    let mut info = SolveInfo { iterations: 0, residual: ratio(size(system.diagonal(), &work.residual)) };
     let mut rho = 0.0;
     while info.residual > stop.tolerance {
         if info.iterations == stop.max_iterations {
             return Err(failed(info.iterations, info.residual));
         }
-        multigrid.apply(system, &work.residual, &mut work.corrected);
+        system.precondition(&work.residual, &mut work.corrected);
         rho = work.turn(rho);
-        let curvature = work.curvature(system);
+        let curvature = work.curvature(&system);
         if !(rho > 0.0 && curvature > 0.0 && (rho / curvature).is_finite()) {
             return Err(failed(info.iterations, f64::NAN));
         }
-        work.step(rho / curvature, x, is_singular);
-        info = SolveInfo { iterations: info.iterations + 1, residual: ratio(size(system, &work.residual)) };
+        work.step(rho / curvature, x, system.is_singular());
+        let residual = ratio(size(system.diagonal(), &work.residual));
+        info = SolveInfo { iterations: info.iterations + 1, residual };
     }
     if info.residual.is_finite() { Ok(info) } else { Err(failed(info.iterations, f64::NAN)) }
 }
 
 impl Workspace {
     /// The residual of `x`; no direction yet.
-    fn begin(&mut self, system: &PairSystem, b: &[f64], x: &[f64], is_singular: bool) {
+    fn begin(&mut self, system: &impl SymmetricSystem, b: &[f64], x: &[f64]) {
         for vector in [&mut self.residual, &mut self.corrected, &mut self.direction, &mut self.image] {
             vector.clear();
             vector.resize(b.len(), 0.0);
         }
-        let residual = self.residual.par_iter_mut().enumerate().with_min_len(512);
-        residual.for_each(|(i, r)| *r = b[i] - system.row(x, i));
-        if is_singular {
+        system.multiply(x, &mut self.residual);
+        self.residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        if system.is_singular() {
             remove_mean(&mut self.residual);
         }
     }
@@ -117,9 +173,9 @@ impl Workspace {
     }
 
     /// `p . A p`, leaving `A p` in the image.
-    fn curvature(&mut self, system: &PairSystem) -> f64 {
+    fn curvature(&mut self, system: &impl SymmetricSystem) -> f64 {
         let Self { direction, image, .. } = self;
-        image.par_iter_mut().enumerate().with_min_len(512).for_each(|(i, q)| *q = system.row(direction, i));
+        system.multiply(direction, image);
         ordered_sum(direction.len(), 0.0, |i| direction[i] * image[i])
     }
 
@@ -135,8 +191,8 @@ impl Workspace {
 }
 
 /// `v . v/diag`.
-fn size(system: &PairSystem, v: &[f64]) -> f64 {
-    ordered_sum(v.len(), 0.0, |i| v[i] * v[i] / system.diagonal[i])
+fn size(diagonal: &[f64], v: &[f64]) -> f64 {
+    ordered_sum(v.len(), 0.0, |i| v[i] * v[i] / diagonal[i])
 }
 
 fn remove_mean(values: &mut [f64]) {

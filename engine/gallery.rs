@@ -71,6 +71,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         text: include_str!("../scenes/coalescence.ron"),
     },
     BuiltInScene {
+        name: "unequal_tensions",
+        summary: "two bubbles of different soaps share a wall, and not at 120 degrees",
+        text: include_str!("../scenes/unequal_tensions.ron"),
+    },
+    BuiltInScene {
         name: "pulled_double_bubble",
         summary: "two rings pull a double bubble apart",
         text: include_str!("../scenes/pulled_double_bubble.ron"),

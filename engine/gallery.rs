@@ -186,6 +186,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         summary: "a ring that sweeps through the air blows bubbles",
         text: include_str!("../scenes/sweeping_ring.ron"),
     },
+    BuiltInScene {
+        name: "ring_in_wind",
+        summary: "the wind blows a bubble out of a film on a ring",
+        text: include_str!("../scenes/ring_in_wind.ron"),
+    },
 ];
 
 /// The built-in scene of a name.

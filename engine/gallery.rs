@@ -91,6 +91,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         text: include_str!("../scenes/coalescence.ron"),
     },
     BuiltInScene {
+        name: "unequal_tensions",
+        summary: "two bubbles of different soaps share a wall, and not at 120 degrees",
+        text: include_str!("../scenes/unequal_tensions.ron"),
+    },
+    BuiltInScene {
         name: "pulled_double_bubble",
         summary: "two rings pull a double bubble apart",
         text: include_str!("../scenes/pulled_double_bubble.ron"),
@@ -205,6 +210,11 @@ pub const GALLERY: &[BuiltInScene] = &[
         name: "inflating_bubble",
         summary: "a bubble that is blown up pushes bubbles and a film on a ring away",
         text: include_str!("../scenes/inflating_bubble.ron"),
+    },
+    BuiltInScene {
+        name: "ring_in_wind",
+        summary: "the wind blows a bubble out of a film on a ring",
+        text: include_str!("../scenes/ring_in_wind.ron"),
     },
 ];
 

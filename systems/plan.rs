@@ -2,7 +2,7 @@
 //!
 //! A method is a list of [`SchedulePlan::add`] calls. Inside a stage, systems run in the order in which they are added:
 //! nothing is ambiguous, and the order of floating-point sums is fixed. Run conditions of the ECS are opaque; a [`Requires`]
-//! carries its reason in words, so that [`SchedulePlan::explain`] can say why a system runs or rests.
+//! carries its reason in words, so that [`SchedulePlan::explain`] can say why a system runs or rests. [`StageTimes`] says where the time goes.
 //!
 //! ```
 //! use froth_components::kind::LagrangianParticle;
@@ -19,6 +19,8 @@
 //! assert_eq!(explained[0].unmet, ["lagrangian particles"]);
 //! ```
 
+mod stage_times;
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -29,6 +31,8 @@ use bevy_ecs::system::IntoSystem;
 use bevy_ecs::world::World;
 use froth_components::clock::Clock;
 use froth_components::kind::Kind;
+
+pub use stage_times::StageTimes;
 
 use crate::observe::Faults;
 use crate::stage::{Part, Stage, staged_schedule};

@@ -2,9 +2,7 @@
 
 use clap::Args;
 use froth_components::authored::field::{Gravity, Wind};
-use froth_components::authored::method::{
-    FilmMotion, GeometricFlowSettings, MelpSettings, MethodChoice, VortexSheetSettings,
-};
+use froth_components::authored::method::{MelpSettings, MethodChoice};
 use froth_components::authored::motion::{Drift, Spin, Swirl};
 use froth_components::authored::wire::Moves;
 use froth_components::quantity::Time;
@@ -107,17 +105,14 @@ fn steps(scene: &Scene, estimate: &Estimate) -> String {
     let (duration, longest) = (scene.header.duration.si(), longest_step(&scene.header));
     let least = (duration / longest).ceil();
     let known = format!("{least:.0} or more, none longer than {:.3} ms", 1e3 * longest);
-    let (known, cfl) = match scene.header.method {
-        MethodChoice::Melp(MelpSettings { substeps, cfl, .. }) if substeps > 1 && scene.has_liquid() => {
-            (format!("{known}, each of up to {substeps} substeps"), cfl)
+    let known = match scene.header.method {
+        MethodChoice::Melp(MelpSettings { substeps, .. }) if substeps > 1 && scene.has_liquid() => {
+            format!("{known}, each of up to {substeps} substeps")
         }
-        MethodChoice::Melp(MelpSettings { cfl, .. })
-        | MethodChoice::GeometricFlow(GeometricFlowSettings { cfl, .. })
-        | MethodChoice::VortexSheet(VortexSheetSettings { cfl, .. }) => (known, cfl),
-        _ => return known,
+        _ => known,
     };
     let speed = likely_speed(scene);
-    let crossing = cfl.si() * estimate.spacing / speed;
+    let crossing = scene.header.method.cfl().si() * estimate.spacing / speed;
     if crossing >= longest {
         return known;
     }
@@ -127,19 +122,15 @@ fn steps(scene: &Scene, estimate: &Estimate) -> String {
 /// The longest of equal steps, as many as a frame needs under the limits that scene and method give, s.
 fn longest_step(header: &SceneHeader) -> f64 {
     let frame = 1.0 / header.frames_per_second.si();
-    let own = match header.method {
-        MethodChoice::GeometricFlow(settings) => settings.time_step,
-        _ => None,
-    };
-    let limit = [header.maximum_step, own].into_iter().flatten().map(Time::si).fold(frame, f64::min);
+    let limit =
+        [header.maximum_step, header.method.longest_step()].into_iter().flatten().map(Time::si).fold(frame, f64::min);
     frame / (frame / limit).ceil()
 }
 
 /// The speed of a fall, m/s; of overdamped films, which do not fall freely, that at which tension moves a bubble's own curvature,
 /// `mobility * 4 σ / R`.
 fn creep_or(fall: f64, scene: &Scene) -> f64 {
-    let MethodChoice::GeometricFlow(settings) = scene.header.method else { return fall };
-    let FilmMotion::Overdamped(creep) = settings.motion else { return fall };
+    let Some(creep) = scene.header.method.creep() else { return fall };
     let smallest = scene.films().map(|(_, shape)| shape.size()).fold(f64::INFINITY, f64::min);
     creep.mobility.si() * 4.0 * scene.header.liquid.surface_tension.si() / smallest
 }

@@ -96,7 +96,7 @@ impl Scene {
 
     /// Whether films have liquid that flows.
     pub(crate) fn has_liquid(&self) -> bool {
-        honours::has_liquid(&self.header.method)
+        self.header.method.has_liquid()
     }
 
     /// What acts on liquid alone finds some.
@@ -118,7 +118,7 @@ impl Scene {
 
     /// What acts through inertia finds some.
     fn check_inertia(&self) -> Result<(), SceneError> {
-        if honours::has_inertia(&self.header.method) {
+        if self.header.method.creep().is_none() {
             return Ok(());
         }
         let mut components = self.entities.iter().flat_map(|entity| &entity.components);

@@ -3,7 +3,7 @@
 //! What a method cannot honour changes the meaning of a scene, and is an error. Components of the user's own are the user's affair.
 
 use froth_components::authored::mesh_shape::MeshShape;
-use froth_components::authored::method::{FilmMotion, MethodChoice, MethodName};
+use froth_components::authored::method::MethodName;
 use froth_components::authored::shape::Shape;
 
 /// What geometric flow honours besides shapes. Its films have thickness, hence weight and colour, but no liquid that flows.
@@ -26,26 +26,9 @@ pub(super) fn needs_liquid(component: &str) -> bool {
     ON_LIQUID.contains(&component)
 }
 
-/// Whether films have liquid that flows, under a method with its settings.
-pub(super) fn has_liquid(method: &MethodChoice) -> bool {
-    match method {
-        MethodChoice::Melp(settings) => settings.liquid_per_carrier > 0,
-        MethodChoice::GeometricFlow(_) | MethodChoice::VortexSheet(_) => false,
-        _ => true,
-    }
-}
-
 /// Whether a component has no effect on films without inertia.
 pub(super) fn needs_inertia(component: &str) -> bool {
     ON_INERTIA.contains(&component)
-}
-
-/// Whether films have inertia, under a method with its settings.
-pub(super) fn has_inertia(method: &MethodChoice) -> bool {
-    match method {
-        MethodChoice::GeometricFlow(settings) => matches!(settings.motion, FilmMotion::Inertial(_)),
-        _ => true,
-    }
 }
 
 /// Whether a method honours a built-in component.

@@ -19,7 +19,7 @@ use froth_components::authored::shape::Place;
 use froth_components::quantity::Direction;
 use froth_surface::Region;
 use froth_surface::calculus::angles::{
-    BorderAngles, Deviation, border_angles, border_angles_of_spheres, border_deviation,
+    Deviation, border_angles, border_angles_of_spheres, border_deviation, mean_angle_within,
 };
 use froth_surface::calculus::borders::Borders;
 use froth_surface::invariants::Violation;
@@ -120,7 +120,7 @@ fn rest(edge: f64) -> Result<Rest, LawError> {
         volume_error: run.observed("volume_error"),
         angles: border_deviation(&measured).unwrap_or(Deviation::UNKNOWN),
         ring_angles: border_deviation(&border_angles(&surface, &borders)).unwrap_or(Deviation::UNKNOWN),
-        mean_angles: [0, 1, 2].map(|region| along_border(&measured, Region(region)).to_degrees()),
+        mean_angles: [0, 1, 2].map(|region| mean_angle_within(&measured, Region(region)).to_degrees()),
         violation: run.violation(),
     })
 }
@@ -133,15 +133,6 @@ fn mean(angles: &Deviation) -> f64 {
 /// Largest size of a deviation, degrees.
 fn worst(angles: &Deviation) -> f64 {
     angles.above.max(-angles.below).to_degrees()
-}
-
-/// Mean angle in a region, weighted by length of border, radians.
-fn along_border(measured: &[BorderAngles], region: Region) -> f64 {
-    let parts = measured.iter().flat_map(|at| at.angles.map(|(within, angle)| (within, angle, at.length)));
-    let parts = parts.filter(|(within, ..)| *within == region);
-    let (sum, length) =
-        parts.fold((0.0, 0.0), |(sum, whole), (_, angle, length)| (sum + angle * length, whole + length));
-    sum / length
 }
 
 #[cfg(test)]

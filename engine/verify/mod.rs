@@ -44,6 +44,7 @@ mod sheet_run;
 mod sheet_scenes;
 mod sphere_volume;
 mod transfers;
+mod unequal_tensions;
 mod young_laplace;
 
 use froth_components::quantity::nearest;
@@ -178,6 +179,12 @@ pub const LAWS: &[Law] = &[
         summary: "two unequal bubbles rest at 120 degrees, with pressures 4 sigma/R and the least area",
         source: "Plateau 1873, Laplace 1806; closed form",
         measure: double_bubble::measure,
+    },
+    Law {
+        name: "unequal_tensions",
+        summary: "films of different soaps meet at the angles of the triangle of their tensions",
+        source: "Neumann 1894; closed form",
+        measure: unequal_tensions::measure,
     },
     Law {
         name: "catenoid",

@@ -10,6 +10,10 @@
 //! shorter than any mesh. In the first two periods the part of degree 4 falls to three fifths on every mesh; later the finer mesh, which has more
 //! modes to give it to, keeps less of it: 0.55, 0.37 and 0.41 of the first swing after ten periods at 6, 4 and 3.2 mm. What the
 //! scheme itself takes shows in a wave of 5 %, which has nothing else to lose.
+//!
+//! A damped cube is at rest after 0.3 s, when its air has 1e-15 J left; what stays is the least area of flat faces around its volume, which
+//! is no sphere: vertices among uneven faces stand off by one or two sagittas `h^2/(8 R^2)`. Farthest from the sphere that fits best, as a part of
+//! the radius: 1.02e-3 at 3.2 mm, the same to a thousandth from 0.4 s to 2 s, and 0.96e-3 at 3 mm.
 
 use std::f64::consts::PI;
 
@@ -20,6 +24,7 @@ use glam::DVec3;
 
 use super::finding::Finding;
 use super::mesh_run::{MeshRun, unbroken};
+use super::oscillation::least_squares;
 use super::scene_run::{SceneRun, shape_amplitude};
 use super::sheet_run::{TENSION, air_period, energies, free_film};
 use super::{Effort, LawError};
@@ -134,12 +139,14 @@ fn ringing(effort: Effort) -> Result<Vec<Finding>, LawError> {
 }
 
 fn damped(effort: Effort) -> Result<Vec<Finding>, LawError> {
-    let (edge, end, tolerance) = effort.choose(("8 mm", 0.4, 1e-2), ("3.2 mm", 0.8, 1e-3));
+    let (edge, end, tolerance) = effort.choose(("8 mm", 0.4, 1e-2), ("3 mm", 0.8, 1e-3));
     let scene = SceneRun::of("cube_damped").with("Spacing(\"5 mm\")", &format!("Spacing(\"{edge}\")"));
     let mut run = MeshRun::at(&scene, end)?;
     let surface = run.surface();
     let face = surface.film_area() / surface.mesh.face_count() as f64;
-    let lengths: Vec<f64> = run.simulation.column::<MeshVertex, Position>().iter().map(|x| x.0.length()).collect();
+    let places: Vec<DVec3> = run.simulation.column::<MeshVertex, Position>().iter().map(|x| x.0).collect();
+    let centre = centre_of(&places);
+    let lengths: Vec<f64> = places.iter().map(|x| x.distance(centre)).collect();
     let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
     let off = lengths.iter().map(|r| (r / mean - 1.0).abs()).fold(0.0, f64::max);
     let expected = radius() + 4.0 * face / (3f64.sqrt() * 8.0 * radius());
@@ -155,4 +162,25 @@ fn damped(effort: Effort) -> Result<Vec<Finding>, LawError> {
         Finding::vanishing("damped cube: error of the volume in any step, relative", run.volume_error, BAR_OF_VOLUME),
         unbroken([run.violation()]),
     ])
+}
+
+/// Centre of the sphere that fits places best, m.
+fn centre_of(places: &[DVec3]) -> DVec3 {
+    // On a sphere `x^2/2 = c.x` plus a constant.
+    let rows = places.iter().map(|x| ([1.0, x.x, x.y, x.z], 0.5 * x.length_squared()));
+    let [_, x, y, z] = least_squares(rows);
+    DVec3::new(x, y, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_centre_of_places_on_a_part_of_a_sphere_is_that_of_the_sphere() {
+        let centre = DVec3::new(1e-3, -2e-3, 5e-4);
+        let upper = (0..20).map(|k| DVec3::new(f64::from(k).cos(), f64::from(k).sin(), 0.1 * f64::from(k)));
+        let places: Vec<DVec3> = upper.map(|x| centre + 0.05 * x.normalize()).collect();
+        assert!(centre_of(&places).distance(centre) < 1e-12);
+    }
 }

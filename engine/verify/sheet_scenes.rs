@@ -1,4 +1,4 @@
-//! The scenes of Da 2015 run to their end: nothing stops, no invariant of the mesh breaks, bubbles keep their gas, and what shall happen does.
+//! The scenes of Da 2015, and a ring in the wind, run to their end: nothing stops, no invariant of the mesh breaks, bubbles keep their gas, and what shall happen does.
 //!
 //! Quick runs a few steps of each on coarse meshes.
 
@@ -28,7 +28,7 @@ struct Scene {
     shown: fn(&mut Story) -> Vec<Finding>,
 }
 
-const SCENES: [Scene; 10] = [
+const SCENES: [Scene; 11] = [
     Scene { name: "cube_oscillation", spacing: "3.2 mm", coarse: "8 mm", shown: |story| story.bubbles(1.0) },
     Scene { name: "cube_damped", spacing: "5 mm", coarse: "8 mm", shown: |story| story.bubbles(1.0) },
     Scene { name: "double_bubble_oscillation", spacing: "4.5 mm", coarse: "8 mm", shown: |story| story.bubbles(2.0) },
@@ -38,7 +38,8 @@ const SCENES: [Scene; 10] = [
     Scene { name: "pulling_double_bubble", spacing: "5 mm", coarse: "8 mm", shown: parts },
     Scene { name: "bubble_cluster", spacing: "5 mm", coarse: "8 mm", shown: |story| story.bubbles(10.0) },
     Scene { name: "bubble_popping", spacing: "5 mm", coarse: "8 mm", shown: pops },
-    Scene { name: "sweeping_ring", spacing: "5 mm", coarse: "8 mm", shown: blows },
+    Scene { name: "sweeping_ring", spacing: "5 mm", coarse: "8 mm", shown: |story| blows(story, 2) },
+    Scene { name: "ring_in_wind", spacing: "5 mm", coarse: "8 mm", shown: |story| blows(story, 1) },
 ];
 
 /// A run with what was seen on the way.
@@ -166,7 +167,7 @@ fn pops(story: &mut Story) -> Vec<Finding> {
     vec![story.happened("bursts", story.run.count(EventKind::Burst), 9)]
 }
 
-/// The ring blows bubbles.
-fn blows(story: &mut Story) -> Vec<Finding> {
-    vec![story.happened("bubbles", story.most_bubbles as usize, 2)]
+/// The ring blows so many bubbles at least.
+fn blows(story: &mut Story, least: usize) -> Vec<Finding> {
+    vec![story.happened("bubbles", story.most_bubbles as usize, least)]
 }

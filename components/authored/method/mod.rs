@@ -13,7 +13,7 @@ pub use melp::{Gas, MelpSettings, Transfer};
 pub use remesh::{Contact, Placement, Remesh};
 pub use vortex_sheet::{Discretisation, Integrator, Kernel, PairSummation, VortexSheetSettings};
 
-use crate::quantity::{MassPerArea, range};
+use crate::quantity::{MassPerArea, Ratio, Time, range};
 
 /// The method of a scene, with its settings. Written `Melp(cfl: 0.99)`; a bare name takes all defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -46,6 +46,43 @@ impl MethodChoice {
             MethodName::GeometricFlow => Some(Self::GeometricFlow(GeometricFlowSettings::default())),
             MethodName::VortexSheet => Some(Self::VortexSheet(VortexSheetSettings::default())),
             MethodName::VortexParticle => None,
+        }
+    }
+
+    /// How far films flow in one step, in edges or spacings.
+    #[must_use]
+    pub fn cfl(&self) -> Ratio {
+        match self {
+            Self::Melp(settings) => settings.cfl,
+            Self::GeometricFlow(settings) => settings.cfl,
+            Self::VortexSheet(settings) => settings.cfl,
+        }
+    }
+
+    /// Longest step that the method's own settings allow, seconds.
+    #[must_use]
+    pub fn longest_step(&self) -> Option<Time> {
+        match self {
+            Self::GeometricFlow(settings) => settings.time_step,
+            Self::Melp(_) | Self::VortexSheet(_) => None,
+        }
+    }
+
+    /// How films creep where they have no inertia.
+    #[must_use]
+    pub fn creep(&self) -> Option<Overdamped> {
+        match self {
+            Self::GeometricFlow(GeometricFlowSettings { motion: FilmMotion::Overdamped(creep), .. }) => Some(*creep),
+            _ => None,
+        }
+    }
+
+    /// Whether films have liquid that flows within them.
+    #[must_use]
+    pub fn has_liquid(&self) -> bool {
+        match self {
+            Self::Melp(settings) => settings.liquid_per_carrier > 0,
+            Self::GeometricFlow(_) | Self::VortexSheet(_) => false,
         }
     }
 }

@@ -109,6 +109,16 @@ pub fn quadruple_deviation(measured: &[QuadrupleAngles]) -> Option<Deviation> {
     deviation(measured.iter().flat_map(|at| at.angles.map(|angle| (angle - quadruple_angle(), 1.0))))
 }
 
+/// Mean angle within a region, weighted by length of border, radians; not a number where there is none.
+#[must_use]
+pub fn mean_angle_within(measured: &[BorderAngles], region: Region) -> f64 {
+    let parts = measured.iter().flat_map(|at| at.angles.map(|(within, angle)| (within, angle, at.length)));
+    let parts = parts.filter(|(within, ..)| *within == region);
+    let (sum, length) =
+        parts.fold((0.0, 0.0), |(sum, whole), (_, angle, length)| (sum + angle * length, whole + length));
+    sum / length
+}
+
 fn deviation(parts: impl Iterator<Item = (f64, f64)>) -> Option<Deviation> {
     let start = (0.0, 0.0, f64::NEG_INFINITY, f64::INFINITY);
     let (sum, weight, above, below) = parts.fold(start, |(sum, weight, above, below), (off, w)| {

@@ -7,7 +7,7 @@ use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
 use bevy_ecs::system::ResMut;
 use bevy_ecs::world::World;
 
-use crate::plan::SchedulePlan;
+use super::SchedulePlan;
 use crate::stage::{Part, Stage};
 
 /// Wall time of each stage, of the last step and of all steps. Not part of the state of a run.

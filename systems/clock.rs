@@ -41,6 +41,11 @@ impl StepLimits {
         self.propose(name, seconds * f64::from(most.max(1)));
     }
 
+    /// Asks that substeps be no longer than a `part` of what is allowed so far, and that a step hold at most `most` of them.
+    pub fn shorten_substeps(&mut self, name: &'static str, part: f64, most: u32) {
+        self.propose_for_substeps(name, part * self.substep, most);
+    }
+
     /// The least number of equal substeps of a step of `length` seconds.
     fn substeps(&self, length: f64) -> u32 {
         (length / self.substep - TOLERANCE).ceil().max(1.0) as u32

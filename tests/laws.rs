@@ -36,8 +36,10 @@ laws! {
     a_drained_film_is_exponential = "drainage";
     an_uneven_disc_evens_out = "equilibrium_disc";
     a_bubble_at_rest_stays_at_rest = "resting_bubble";
+    clusters_of_particles_come_to_rest_with_plateaus_angles = "particle_clusters";
     a_bubble_keeps_its_volume_while_its_mesh_changes = "sphere_volume";
     unequal_bubbles_meet_at_120_degrees_with_the_least_area = "double_bubble";
+    two_soaps_meet_at_neumanns_angles = "unequal_tensions";
     a_catenoid_holds_up_to_the_widest_gap = "catenoid";
     two_bubbles_that_touch_become_a_double_bubble = "coalescence";
     a_double_bubble_that_is_pulled_apart_becomes_two_bubbles = "pulled_double_bubble";

@@ -130,12 +130,22 @@ fn a_run_that_stops_at_every_step_goes_on_bit_for_bit() {
 
 #[test]
 fn open_films_several_films_and_warm_liquid_go_on_bit_for_bit() {
+    assert_goes_on(common::OPEN_FILMS);
+}
+
+#[test]
+fn bubbles_of_particles_that_meet_go_on_bit_for_bit() {
+    assert_goes_on(common::MEETING);
+}
+
+/// Stops a run after its third step, resumes it, and holds it against one that was not stopped.
+fn assert_goes_on(scene: &str) {
     let parent = tempfile::tempdir().unwrap();
     let [whole, stopped] = ["whole", "stopped"].map(|name| parent.path().join(name));
-    begin_scene(common::OPEN_FILMS, &whole, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
+    begin_scene(scene, &whole, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
     let settings = RunSettings::default();
     let mut stop = StopAfter::step(3, &settings);
-    let end = begin_scene(common::OPEN_FILMS, &stopped, settings).drive(&mut draw, &mut stop).unwrap();
+    let end = begin_scene(scene, &stopped, settings).drive(&mut draw, &mut stop).unwrap();
     assert!(matches!(end, RunEnd::Stopped { .. }));
     resume(&stopped, RunSettings::default()).drive(&mut draw, &mut Silent).unwrap();
     assert_same_results(&stopped, &whole);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{FOAM, OPEN_FILMS, SCENE, assert_same_results, draw, results, sheets};
+use common::{FOAM, MEETING, OPEN_FILMS, SCENE, assert_same_results, draw, results, sheets};
 use froth::Simulation;
 use froth::run::{Run, RunFolder, RunSettings, Silent};
 use rayon::ThreadPoolBuilder;
@@ -17,6 +17,11 @@ fn any_number_of_threads_leaves_the_same_bytes() {
 #[test]
 fn open_films_several_films_and_warm_liquid_do_not_depend_on_threads_either() {
     assert_independent_of_threads(OPEN_FILMS, 1.5);
+}
+
+#[test]
+fn bubbles_of_particles_that_meet_do_not_depend_on_threads_either() {
+    assert_independent_of_threads(MEETING, 1.0);
 }
 
 #[test]

@@ -106,3 +106,28 @@ impl SymmetricSystem for NormalSystem<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operators::conjugate_gradient::{StopRule, Workspace, solve_system};
+
+    #[test]
+    fn gas_at_one_atmosphere_is_solved_in_one_iteration_and_keeps_the_volume() {
+        let count = 500;
+        let (areas, mass) = (vec![1e-5; count], vec![2e-7; count]);
+        let gases = [GasSpring { rows: 0..200, stiffness: 1e3 }, GasSpring { rows: 200..count, stiffness: 4e3 }];
+        let contacts = Contacts::default();
+        let system = NormalSystem::new(&contacts, &mass, &areas, &[], &gases);
+        let b: Vec<f64> = (0..count).map(|i| 1e-7 * (1.0 + (0.3 * i as f64).cos())).collect();
+        let (mut x, stop) = (vec![0.0; count], StopRule { tolerance: 1e-9, max_iterations: 3 });
+        let info = solve_system(system, &b, &mut x, stop, &mut Workspace::default()).expect("solved");
+        assert_eq!(info.iterations, 1);
+        for gas in &gases {
+            let flux: f64 = gas.rows.clone().map(|i| areas[i] * x[i]).sum();
+            let free: f64 = gas.rows.clone().map(|i| areas[i] * b[i] / mass[i]).sum();
+            let mobility = gas.rows.len() as f64 * areas[0] * areas[0] / mass[0];
+            assert!((flux / (free / (1.0 + gas.stiffness * mobility)) - 1.0).abs() < 1e-9, "{flux:e}");
+        }
+    }
+}

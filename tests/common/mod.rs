@@ -53,6 +53,23 @@ pub(crate) const OPEN_FILMS: &str = r#"Scene(
 )
 "#;
 
+/// Three bubbles that meet, the third on a wall of the others, with liquid that flows.
+pub(crate) const MEETING: &str = r#"Scene(
+    title: "Bubbles that meet",
+    method: Melp(cfl: 0.5, liquid_per_carrier: 4),
+    resolution: Particles(900),
+    duration: "0.1 s",
+    frames_per_second: 100,
+    picture: (width: 96, height: 96),
+    entities: [
+        [ Sphere(centre: (-0.05, 0.0, 0.0), radius: "5 cm"), Film(thickness: Noise(mean: "400 nm")), Drift((0.1, 0.0, 0.0)) ],
+        [ Sphere(centre: (0.051, 0.0, 0.0), radius: "5 cm"), Film(thickness: Uniform("300 nm")), Drift((-0.1, 0.0, 0.0)) ],
+        [ Sphere(centre: (0.0, 0.087, 0.0), radius: "5 cm"), Film(thickness: Uniform("500 nm")) ],
+        [ AirDrag(rate: "1 1/s", normal: "10 1/s") ],
+    ],
+)
+"#;
+
 /// A small foam as a mesh: volumes, T1 processes, bursts, and a wire that moves.
 pub(crate) const FOAM: &str = r#"Scene(
     title: "A small foam",

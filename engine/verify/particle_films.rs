@@ -199,7 +199,7 @@ mod tests {
     /// Points of a cap of the sphere of radius `radius` around `centre`, up to `widest` from `axis`.
     fn cap(centre: DVec3, radius: f64, axis: DVec3, widest: f64) -> (Vec<DVec3>, Vec<DVec3>) {
         let (t1, t2) = axis.any_orthonormal_pair();
-        let angles = (1..200).map(|k| f64::from(k)).map(|k| (widest * (k / 200.0).sqrt(), 2.4 * k));
+        let angles = (1..200).map(f64::from).map(|k| (widest * (k / 200.0).sqrt(), 2.4 * k));
         let normals: Vec<DVec3> =
             angles.map(|(p, a)| axis * p.cos() + (t1 * a.cos() + t2 * a.sin()) * p.sin()).collect();
         (normals.iter().map(|n| centre + *n * radius).collect(), normals)

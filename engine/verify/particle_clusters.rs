@@ -14,8 +14,9 @@
 //! Deng 2022, tables 2 and 3 and fig. 13.
 //!
 //! # Limits
-//! Of the six walls of `--full`, those of the ratios 0.7 and 0.9 miss 1.5 per cent (2.2, 2.7): the wall is nearly flat there. Where films take hold of each other, the volume measured from carriers is off by what borders round off, a few per mille, and the
-//! evolved one follows it within 20 ms: gas pressures have transients of a few Pa then.
+//! Of the six walls of `--full`, those of the ratios 0.7 and 0.9 miss 1.5 per cent (2.2, 2.7): the wall is nearly flat there.
+//! Where films take hold of each other, the volume measured from carriers is off by what borders round off, a few per mille,
+//! and the evolved one follows it within 20 ms: gas pressures have transients of a few Pa then.
 
 use std::f64::consts::PI;
 

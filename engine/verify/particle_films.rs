@@ -119,7 +119,7 @@ impl FittedFilms {
             }
         }
         let fitted = members.iter().filter_map(|(pair, (x, n))| Some((*pair, Sphere::fit(x, n)?)));
-        let area = areas.iter().enumerate().map(|(i, a)| a.0 * (1.0 - 0.5 * contacts.share(i))).sum();
+        let area = areas.iter().enumerate().map(|(i, a)| a.0 * contacts.interfaces(i)).sum();
         Self { films: fitted.collect(), area }
     }
 

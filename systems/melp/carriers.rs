@@ -70,7 +70,16 @@ pub fn deform_film(
     let before = normals.to_vec();
     let mut relative: Vec<f64> = (0..before.len()).map(|i| motion.displacement[i] / step).collect();
     let density = liquid.density;
-    let was = Momentum::of_films(&lamellae, density, &before, &stencil.0.areas, thickness, &flow.solved, &relative);
+    let was = Carried {
+        lamellae: &lamellae,
+        density,
+        normals: &before,
+        areas: &stencil.0.areas,
+        thickness,
+        flow: &flow.solved,
+        speeds: &relative,
+    }
+    .momenta();
     for (i, (x, n)) in positions.iter_mut().zip(&before).enumerate() {
         x.0 += frames.of(regions[i]) * step + n.0 * motion.displacement[i];
     }
@@ -79,8 +88,16 @@ pub fn deform_film(
     stencil.build_in_passing(Points { positions, normals, regions, wall, wall_regions, spacing });
     refit(&stencil.0, spacing, positions, normals, shapes.bypass_change_detection());
     flow.turn(&before, normals);
-    let areas = &stencil.0.areas;
-    let is = Momentum::of_films(&lamellae, density, normals, areas, thickness, &flow.present, &relative);
+    let is = Carried {
+        lamellae: &lamellae,
+        density,
+        normals,
+        areas: &stencil.0.areas,
+        thickness,
+        flow: &flow.present,
+        speeds: &relative,
+    }
+    .momenta();
     for (is, was) in is.iter().zip(&was) {
         let frame = frames.of(regions[is.rows.start]);
         let shift = is.seen_from(-frame).shift_back_to(&was.seen_from(-frame));
@@ -102,48 +119,31 @@ pub fn deform_film(
     }
 }
 
-/// Momentum and inertia of one free film, relative to its frame.
-struct Momentum {
-    rows: Range<usize>,
-    momentum: DVec3,
-    mass: DMat3,
+/// What carriers carry as they stand; all slices are per carrier.
+#[derive(Clone, Copy)]
+struct Carried<'a> {
+    lamellae: &'a Lamellae,
+    /// Density of the liquid, kg/m^3.
+    density: f64,
+    normals: &'a [Normal],
+    /// m^2.
+    areas: &'a [f64],
+    thickness: &'a [Thickness],
+    /// Tangential velocities, m/s; empty where their momentum is not asked for.
+    flow: &'a [DVec3],
+    /// Speeds along the normals, m/s.
+    speeds: &'a [f64],
 }
 
-impl Momentum {
-    /// Of all films that no rim holds.
-    fn of_films(
-        lamellae: &Lamellae,
-        density: f64,
-        normals: &[Normal],
-        areas: &[f64],
-        thickness: &[Thickness],
-        flow: &[DVec3],
-        speeds: &[f64],
-    ) -> Vec<Self> {
-        let films = lamellae.films.iter().filter(|film| film.rim.is_none());
-        films.map(|film| Self::of(film, density, normals, areas, thickness, flow, speeds)).collect()
-    }
-
-    /// The same film's from a frame that moves at a velocity relative to this one, m/s.
-    fn seen_from(&self, frame: DVec3) -> Self {
-        Self { rows: self.rows.clone(), momentum: self.momentum - self.mass * frame, mass: self.mass }
-    }
-
-    /// The velocity that, given to the film as a whole, makes its momentum what it was.
-    fn shift_back_to(&self, was: &Self) -> DVec3 {
-        mean_motion(was.momentum - self.momentum, self.mass)
+impl Carried<'_> {
+    /// The momentum of every film that no rim holds.
+    fn momenta(&self) -> Vec<Momentum> {
+        self.lamellae.films.iter().filter(|film| film.rim.is_none()).map(|film| self.momentum(film)).collect()
     }
 
     /// `sum m u + (m + m_air) s n` and `sum m (1 - n n^T) + (m + m_air) n n^T`; without a flow, its normal parts alone.
-    fn of(
-        film: &Lamella,
-        density: f64,
-        normals: &[Normal],
-        areas: &[f64],
-        thickness: &[Thickness],
-        flow: &[DVec3],
-        speeds: &[f64],
-    ) -> Self {
+    fn momentum(&self, film: &Lamella) -> Momentum {
+        let Self { density, normals, areas, thickness, flow, speeds, .. } = *self;
         let (rows, start) = (film.carriers.clone(), film.carriers.start);
         let normal_part = |i: usize| (density * thickness[i].0 + film.air_mass) * areas[i];
         let flowing_part = |i: usize| if flow.is_empty() { 0.0 } else { density * thickness[i].0 * areas[i] };
@@ -156,7 +156,26 @@ impl Momentum {
             let (i, n) = (start + k, normals[start + k].0);
             DMat3::from_diagonal(DVec3::splat(flowing_part(i))) + outer(normal_part(i) - flowing_part(i), n, n)
         });
-        Self { rows, momentum, mass }
+        Momentum { rows, momentum, mass }
+    }
+}
+
+/// Momentum and inertia of one free film.
+struct Momentum {
+    rows: Range<usize>,
+    momentum: DVec3,
+    mass: DMat3,
+}
+
+impl Momentum {
+    /// The same film's from a frame that moves at a velocity relative to this one, m/s.
+    fn seen_from(&self, frame: DVec3) -> Self {
+        Self { rows: self.rows.clone(), momentum: self.momentum - self.mass * frame, mass: self.mass }
+    }
+
+    /// The velocity that, given to the film as a whole, makes its momentum what it was.
+    fn shift_back_to(&self, was: &Self) -> DVec3 {
+        mean_motion(was.momentum - self.momentum, self.mass)
     }
 }
 
@@ -215,7 +234,7 @@ pub fn redistribute_carriers(
     let density = liquid.density;
     let momentum = |normals: &[Normal], areas: &[f64], thickness: &[Thickness], speeds: &[NormalSpeed]| {
         let speeds: Vec<f64> = speeds.iter().map(|s| s.0).collect();
-        Momentum::of_films(&lamellae, density, normals, areas, thickness, &[], &speeds)
+        Carried { lamellae: &lamellae, density, normals, areas, thickness, flow: &[], speeds: &speeds }.momenta()
     };
     let was = momentum(normals, &stencil.0.areas, thickness, speeds);
     let there = |values: Vec<f64>| moved_values(&stencil.0, positions, normals, &moves.displacement, &values);

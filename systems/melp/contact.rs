@@ -31,6 +31,7 @@
 //! flat rim enclose no gas and have no outside: they touch nothing.
 
 use super::frames::FilmFrames;
+use super::near_films::{Boxes, clusters};
 use super::state::FilmStencil;
 use crate::clock::StepLimits;
 use crate::neighbours::lists::NeighbourLists;
@@ -46,7 +47,6 @@ use froth_components::kind::EulerianParticle;
 use froth_components::lamella::{Lamella, Lamellae};
 use froth_components::motion::{Normal, NormalSpeed, Position};
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Reach of the gap's weights, in spacings.
 const REACH: f64 = 2.5;
@@ -123,14 +123,7 @@ impl Binding {
 
 impl Contacts {
     /// Looks for contacts between films that enclose gas. `stencil` holds the carriers' cells.
-    pub fn find(
-        &mut self,
-        positions: &[Position],
-        normals: &[Normal],
-        regions: &[InRegion],
-        stencil: &Stencil,
-        lamellae: &Lamellae,
-    ) {
+    pub fn find(&mut self, positions: &[Position], normals: &[Normal], stencil: &Stencil, lamellae: &Lamellae) {
         let reach = REACH * lamellae.spacing;
         self.spacing = lamellae.spacing;
         let boxes = Boxes::around(positions, lamellae, 0.5 * reach);
@@ -142,8 +135,7 @@ impl Contacts {
         }
         let found = NeighbourLists::collect_beside(positions.len(), |i, found, weights: &mut Vec<f64>| {
             let place = positions[i].0;
-            let film = film_of[i] as usize;
-            let others = &near[film];
+            let others = &near[film_of[i] as usize];
             if !others.iter().any(|&other| boxes.holds(other as usize, place)) {
                 return Gap::NONE;
             }
@@ -151,7 +143,7 @@ impl Contacts {
             stencil.cells.for_each_near(place, reach, |j| {
                 let offset = place - positions[j].0;
                 let q = offset.length_squared() / (reach * reach);
-                if q >= 1.0 || regions[j] == regions[i] || others.binary_search(&film_of[j]).is_err() {
+                if q >= 1.0 || others.binary_search(&film_of[j]).is_err() {
                     return;
                 }
                 let (weight, n) = ((1.0 - q).powi(3), normals[j].0);
@@ -189,10 +181,7 @@ impl Contacts {
     /// The law at carrier `i`, whose surface tension is `sigma`, N/m.
     #[must_use]
     pub fn binding(&self, i: usize, sigma: f64) -> Binding {
-        match self.gaps.get(i) {
-            Some(gap) => Binding::at(*gap, sigma, self.spacing),
-            None => Binding { share: 0.0, pull: 0.0, stiffness: 0.0 },
-        }
+        Binding::at(self.gaps.get(i).copied().unwrap_or(f64::INFINITY), sigma, self.spacing)
     }
 
     /// `k`: stiffness of a sheet with surface tension `sigma` (N/m) pressed into another, Pa/m.
@@ -205,6 +194,12 @@ impl Contacts {
     #[must_use]
     pub fn share(&self, i: usize) -> f64 {
         self.binding(i, 1.0).share
+    }
+
+    /// Part of the two interfaces of a film that carrier `i` has, `1 - chi/2`: half of them where another bubble's sheet is the other half.
+    #[must_use]
+    pub fn interfaces(&self, i: usize) -> f64 {
+        1.0 - 0.5 * self.share(i)
     }
 
     /// `(J s)_i`: rate at which gap `i` opens when carriers move along their normals at `speeds`, m/s.
@@ -258,7 +253,7 @@ const LONGEST_APPROACH: f64 = 0.2;
 
 /// Looks for contacts between the films where they stand.
 pub fn find_contacts(
-    carriers: Query<(&Position, &Normal, &InRegion), With<EulerianParticle>>,
+    carriers: Query<(&Position, &Normal), With<EulerianParticle>>,
     stencil: Res<FilmStencil>,
     lamellae: Res<Lamellae>,
     mut contacts: ResMut<Contacts>,
@@ -269,14 +264,15 @@ pub fn find_contacts(
         contacts.clear(lamellae.films.len());
         return;
     }
-    let (positions, normals, regions) = columns(&carriers);
-    contacts.find(positions, normals, regions, &stencil.0, &lamellae);
+    let (positions, normals) = columns(&carriers);
+    contacts.find(positions, normals, &stencil.0, &lamellae);
     let depth = contacts.deepest() / lamellae.spacing;
     observables.raise("contact_depth", "1", depth);
     if depth > TOO_DEEP {
         let row = (0..positions.len()).min_by(|a, b| contacts.gaps[*a].total_cmp(&contacts.gaps[*b])).unwrap_or(0);
         let detail = format!(
-            "reach {depth:.1} spacings into each other: bubbles that start inside each other, or met too fast for their particles;              move them apart, or use more particles"
+            "reach {depth:.1} spacings into each other: bubbles that start inside each other, or met too fast for their particles; \
+             move them apart, or use more particles"
         );
         faults.report(Fault::new(Stage::Geometry, "films", detail).on_particle("eulerian", row, None));
     }
@@ -316,78 +312,6 @@ pub fn limit_step_by_approach(
         let substep = LONGEST_APPROACH * lamellae.spacing / (2.0 * fastest);
         limits.propose_for_substeps("approach of films", substep, MOST_SUBSTEPS);
     }
-}
-
-/// Boxes around the films that can touch, with a margin; empty ones around all others.
-struct Boxes {
-    low: Vec<DVec3>,
-    high: Vec<DVec3>,
-    margin: f64,
-}
-
-impl Boxes {
-    fn around(positions: &[Position], lamellae: &Lamellae, margin: f64) -> Self {
-        let bounds: Vec<(DVec3, DVec3)> = lamellae
-            .films
-            .par_iter()
-            .map(|film| {
-                let rows = if film.encloses_gas() { film.carriers.clone() } else { 0..0 };
-                let places = positions[rows].iter().map(|x| x.0);
-                let (low, high) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-                (low - margin, high + margin)
-            })
-            .collect();
-        let (low, high) = bounds.into_iter().unzip();
-        Self { low, high, margin }
-    }
-
-    /// For each film the others whose boxes meet its own, ascending. Sweeps along x: never all pairs.
-    fn near(&self) -> Vec<Vec<u32>> {
-        let mut order: Vec<usize> = (0..self.low.len()).filter(|&k| self.low[k].x.is_finite()).collect();
-        order.sort_by(|&a, &b| self.low[a].x.total_cmp(&self.low[b].x).then(a.cmp(&b)));
-        let mut near = vec![Vec::new(); self.low.len()];
-        for (at, &a) in order.iter().enumerate() {
-            for &b in order[at + 1..].iter().take_while(|&&b| self.low[b].x <= self.high[a].x) {
-                if self.low[b].cmple(self.high[a]).all() && self.low[a].cmple(self.high[b]).all() {
-                    near[a].push(b as u32);
-                    near[b].push(a as u32);
-                }
-            }
-        }
-        near.iter_mut().for_each(|others| others.sort_unstable());
-        near
-    }
-
-    /// Whether a place is in a film's box with twice the margin: within reach of its carriers.
-    fn holds(&self, film: usize, place: DVec3) -> bool {
-        place.cmpge(self.low[film] - self.margin).all() && place.cmple(self.high[film] + self.margin).all()
-    }
-}
-
-/// Films joined by nearness, least member first.
-fn clusters(near: &[Vec<u32>]) -> Vec<Vec<usize>> {
-    let mut of = vec![usize::MAX; near.len()];
-    let mut clusters: Vec<Vec<usize>> = Vec::new();
-    for first in 0..near.len() {
-        if of[first] != usize::MAX {
-            continue;
-        }
-        let (mut members, mut next) = (vec![first], 0);
-        of[first] = clusters.len();
-        while next < members.len() {
-            for &other in &near[members[next]] {
-                let other = other as usize;
-                if of[other] == usize::MAX {
-                    of[other] = clusters.len();
-                    members.push(other);
-                }
-            }
-            next += 1;
-        }
-        members.sort_unstable();
-        clusters.push(members);
-    }
-    clusters
 }
 
 #[cfg(test)]
@@ -436,7 +360,7 @@ mod tests {
         };
         let lamellae = Lamellae { films: vec![film(0), film(1)], spacing };
         let mut contacts = Contacts::default();
-        contacts.find(x, n, r, &stencil, &lamellae);
+        contacts.find(x, n, &stencil, &lamellae);
         (contacts, normals)
     }
 
@@ -466,11 +390,5 @@ mod tests {
         // Bubbles that move as one open no gap.
         let still = (0..1600).map(|i| contacts.opening_of(i, &normals, |_| DVec3::Y).abs()).fold(0.0, f64::max);
         assert!(still < 1e-12, "{still:e}");
-    }
-
-    #[test]
-    fn films_joined_through_others_are_one_cluster() {
-        let near = [vec![2], vec![], vec![0, 4], vec![], vec![2]];
-        assert_eq!(clusters(&near), [vec![0, 2, 4], vec![1], vec![3]]);
     }
 }

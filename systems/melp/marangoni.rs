@@ -162,7 +162,7 @@ pub fn solve_marangoni(
         velocity: &flow.solved,
         stretching: &stretching,
         mobility: 2.0 * liquid.thermal_energy() / liquid.density,
-        interfaces: &(0..positions.len()).map(|i| 1.0 - 0.5 * contacts.share(i)).collect::<Vec<_>>(),
+        interfaces: &(0..positions.len()).map(|i| contacts.interfaces(i)).collect::<Vec<_>>(),
         step,
     };
     let films: Vec<Range<usize>> = lamellae.films.iter().map(|film| film.carriers.clone()).collect();

@@ -348,7 +348,7 @@ pub fn advance_normal_motion(
     let per_carrier = |f: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
         (0..count).into_par_iter().with_min_len(256).map(f).collect()
     };
-    let shared = per_carrier(&|i| tension[i] * (1.0 - 0.5 * contacts.share(i)));
+    let shared = per_carrier(&|i| tension[i] * contacts.interfaces(i));
     let forces = NormalForces {
         lamellae: &lamellae,
         stencil,
@@ -418,7 +418,7 @@ fn tension_gradients(
     (0..stencil.len())
         .into_par_iter()
         .with_min_len(256)
-        .map(|i| stencil.gradient(positions, normals, i, |j| tension[j]) * (2.0 - contacts.share(i)))
+        .map(|i| stencil.gradient(positions, normals, i, |j| tension[j]) * (2.0 * contacts.interfaces(i)))
         .collect()
 }
 

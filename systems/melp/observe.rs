@@ -36,7 +36,7 @@ pub fn observe_films(
     let (areas, count) = (&stencil.0.areas, positions.len());
     let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| ordered_sum(count, 0.0, f);
     // Two sheets that are one film count half each.
-    let film_area = |i: usize| areas[i] * (1.0 - 0.5 * contacts.share(i));
+    let film_area = |i: usize| areas[i] * contacts.interfaces(i);
     observables.record("area", "m^2", sum(&film_area));
     observables.raise("max_speed", "m/s", ordered_max(count, 0.0, |i| velocities[i].0.length()));
     observables.record("surface_energy", "J", sum(&|i| 2.0 * tension[i].0 * film_area(i)));

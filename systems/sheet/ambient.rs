@@ -33,6 +33,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use froth_surface::Region;
+use froth_surface::calculus::solid_angle::solid_angle;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -116,13 +117,6 @@ pub fn velocities_by_sources(
         false => sources.iter().map(|source| source.velocity(positions[v])).sum(),
     };
     (0..layout.vertex_rows()).into_par_iter().map(at).collect_into_vec(velocities);
-}
-
-/// Solid angle of a triangle seen from the origin, positive from behind (van Oosterom and Strackee 1983); 0 where it is seen edge-on.
-fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
-    let [x, y, z] = [a, b, c].map(DVec3::length);
-    let along = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
-    2.0 * a.dot(b.cross(c)).atan2(along)
 }
 
 /// Rate at which the impulse per density changes under the strain of `velocities` (m/s per vertex), m^4/s^2 per vertex: `sum_i phi_i N'_i`.

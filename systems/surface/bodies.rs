@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use crate::calculus::solid_angle::solid_angle;
 use crate::links::Links;
 use crate::rows::{FaceRow, Region};
 use crate::sectors::facing_sides;
@@ -127,11 +128,9 @@ fn relabel(surface: &mut Surface, shell: &Shell, region: Region) {
 fn is_inside(surface: &Surface, hole: &Shell, body: &Shell) -> bool {
     let corners = surface.corners(hole.sides[0].0);
     let point = corners.iter().sum::<DVec3>() / 3.0;
-    let solid_angle = |(row, is_front): &(FaceRow, bool)| {
-        let [a, b, c] = surface.corners(*row).map(|x| (x - point).normalize_or_zero());
-        // Van Oosterom and Strackee 1983.
-        let angle = 2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+    let winding = |(row, is_front): &(FaceRow, bool)| {
+        let angle = solid_angle(surface.corners(*row).map(|x| x - point));
         if *is_front { -angle } else { angle }
     };
-    body.sides.iter().map(solid_angle).sum::<f64>() > std::f64::consts::TAU
+    body.sides.iter().map(winding).sum::<f64>() > std::f64::consts::TAU
 }

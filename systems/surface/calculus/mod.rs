@@ -7,7 +7,7 @@
 //! * [`area`]: areas and the gradient of film energy; [`volume`]: volumes and their gradients.
 //! * [`stiffness`]: the cotangent matrix; [`curvature`]: mean curvature.
 //! * [`borders`]: Plateau borders and where they meet; [`angles`]: the angles there, measured to second order;
-//!   [`quadric`]: the fit behind them.
+//!   [`quadric`]: the fit behind them; [`solid_angle`](mod@solid_angle): of a triangle, from a point.
 
 pub mod angles;
 pub mod area;
@@ -15,6 +15,7 @@ pub mod borders;
 pub mod curvature;
 pub mod incidence;
 pub mod quadric;
+pub mod solid_angle;
 pub mod stiffness;
 pub mod volume;
 pub mod weights;
